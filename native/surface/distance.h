@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "base/context.h"
+#include "surface/polygon_soup.h"
+
+namespace hybrid_mesh {
+
+// Distances between two surfaces as the Metro tool defines them, all relative to the bounding-box diagonal of the first.
+struct SurfaceDistance {
+  double l2 = 0, l2_ab = 0, l2_ba = 0;  // root mean square; l2 is the larger of the two directions
+  double mean = 0;                      // larger direction
+  double hausdorff = 0;                 // largest sampled distance in either direction
+  double boundary_hausdorff = -1;       // the same between the boundary curves; -1 where one surface is closed
+  double diagonal = 0;                  // of the first, absolute
+};
+
+struct DistanceOptions {
+  std::int64_t samples = 200000;  // a direction, stratified by area
+  std::uint64_t seed = 1;
+};
+
+// Area-weighted samples in both directions, closest points by an AABB tree, in parallel; the result does not depend on the number of
+// threads. Quads are split by the diagonal that leaves the flatter pair of triangles, larger polygons by a fan.
+SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, const DistanceOptions& options, const Progress& progress);
+
+}  // namespace hybrid_mesh
