@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs Blender's own QuadriFlow on one mesh:
+blender --background --factory-startup --python quadriflow_in_blender.py -- IN.npz OUT.npz FACES
+
+IN and OUT hold points, offsets and indices; OUT also the seconds that the operator took, and `changed`, because the operator ends as
+FINISHED even where it has left the mesh alone."""
+
+import sys
+import time
+
+import bpy
+import numpy as np
+
+
+def main(source, target, faces):
+    data = np.load(source)
+    points, offsets, indices = data["points"], data["offsets"], data["indices"]
+    mesh = bpy.data.meshes.new("input")
+    mesh.vertices.add(len(points))
+    mesh.vertices.foreach_set("co", points.astype(np.float32).ravel())
+    mesh.loops.add(len(indices))
+    mesh.loops.foreach_set("vertex_index", indices.astype(np.int32))
+    mesh.polygons.add(len(offsets) - 1)
+    mesh.polygons.foreach_set("loop_start", offsets[:-1].astype(np.int32))
+    mesh.polygons.foreach_set("loop_total", np.diff(offsets).astype(np.int32))
+    mesh.update(calc_edges=True)
+    mesh.validate()
+    item = bpy.data.objects.new("input", mesh)
+    bpy.context.scene.collection.objects.link(item)
+    bpy.context.view_layer.objects.active = item
+    item.select_set(True)
+    boundary = bool(int(data["has_boundary"])) if "has_boundary" in data else False
+    before = (len(mesh.vertices), len(mesh.polygons))
+    start = time.perf_counter()
+    status = bpy.ops.object.quadriflow_remesh(
+        use_mesh_symmetry=False, use_preserve_sharp=False, use_preserve_boundary=boundary, mode="FACES", target_faces=faces, seed=0
+    )
+    seconds = time.perf_counter() - start
+    mesh = item.data
+    changed = "FINISHED" in status and before != (len(mesh.vertices), len(mesh.polygons))
+    result = np.empty(len(mesh.vertices) * 3, np.float32)
+    mesh.vertices.foreach_get("co", result)
+    totals = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", totals)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    np.savez(
+        target,
+        points=result.reshape(-1, 3).astype(np.float64),
+        offsets=np.concatenate([[0], np.cumsum(totals, dtype=np.int64)]),
+        indices=corners,
+        seconds=seconds,
+        changed=changed,
+    )
+
+
+arguments = sys.argv[sys.argv.index("--") + 1 :]
+main(arguments[0], arguments[1], int(arguments[2]))
