@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surface/triangle_surface.h"
@@ -23,7 +24,13 @@ struct PolygonSoup {
 // Never trusts a count in the file: memory stays proportional to the file's size.
 // Throws Error{Io} if the file cannot be read, Error{InvalidInput} or Error{CorruptStream} naming the file and the cause
 // if it holds no usable mesh (no faces, an index out of range, a coordinate that is not finite, a truncated list).
+// Polygons of fewer than three corners are left out, lines and points too; corners of .stl facets at the same position are one point.
 PolygonSoup read_polygon_soup(const std::string& path);
+
+enum class MeshFormat { Ply, Obj, Off, Stl };
+
+// The same from memory; `name` stands for the file in messages.
+PolygonSoup read_polygon_soup(std::string_view bytes, MeshFormat format, const std::string& name);
 
 // Writes .ply (binary, float64 positions when they need it, else float32) or .obj, told apart by the extension, to a temporary file
 // beside `path` that is renamed when complete. Throws Error{Io} and leaves nothing behind on failure.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+
+#include "surface/mesh_formats.h"
+#include "surface/text_scanner.h"
+
+namespace hybrid_mesh {
+
+namespace {
+
+// Tokens of logical lines: a backslash at a line's end joins it to the next. Unlike TextScanner, which knows nothing of backslashes.
+class ObjScanner {
+ public:
+  explicit ObjScanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+
+  bool at_end() const { return at_ == end_; }
+  std::int64_t line() const { return line_; }
+
+  std::string_view token() {
+    for (;;) {
+      while (at_ != end_ && is_blank(*at_)) ++at_;
+      if (at_ == end_ || *at_ == '#') return {};
+      if (!skip_continuation()) break;
+    }
+    const char* begin = at_;
+    while (at_ != end_ && !is_blank(*at_) && !is_line_end(*at_) && !continues()) ++at_;
+    return {begin, static_cast<std::size_t>(at_ - begin)};
+  }
+
+  // A comment is not continued: it may well end in a path's backslash.
+  void next_line() {
+    bool comment = false;
+    while (at_ != end_ && !is_line_end(*at_)) {
+      comment = comment || *at_ == '#';
+      if (comment || !skip_continuation()) ++at_;
+    }
+    skip_line_end();
+  }
+
+ private:
+  bool continues() const { return *at_ == '\\' && (at_ + 1 == end_ || is_line_end(at_[1])); }
+  bool skip_continuation() {
+    if (!continues()) return false;
+    ++at_;
+    skip_line_end();
+    return true;
+  }
+  void skip_line_end() {
+    if (at_ == end_) return;
+    if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
+    ++at_;
+    ++line_;
+  }
+
+  const char* at_;
+  const char* end_;
+  std::int64_t line_ = 1;
+};
+
+}  // namespace
+
+PolygonSoup read_obj(std::string_view bytes, const std::string& name) {
+  if (bytes.substr(0, 3) == "\xef\xbb\xbf") bytes.remove_prefix(3);
+  PolygonSoup soup;
+  PolygonCollector polygons(soup);
+  ObjScanner scanner(bytes);
+  const auto refuse = [&](const std::string& cause) { refuse_file(name, "line " + std::to_string(scanner.line()) + ": " + cause); };
+  for (; !scanner.at_end(); scanner.next_line()) {
+    const std::string_view keyword = scanner.token();
+    if (keyword == "v") {
+      Vec3 point;
+      for (int i = 0; i < 3; ++i) {
+        const std::string_view token = scanner.token();
+        if (token.empty()) refuse("a vertex needs three coordinates");
+        if (!parse_number(token, point[i])) refuse(quoted(token) + " is not a number");
+      }
+      soup.points.push_back(point);
+    } else if (keyword == "f" || keyword == "fo") {
+      for (std::string_view token = scanner.token(); !token.empty(); token = scanner.token()) {
+        std::int64_t index = 0;
+        if (!parse_integer(token.substr(0, token.find('/')), index)) refuse(quoted(token) + " is not a face corner");
+        // 1 is the first point, -1 the latest.
+        polygons.add_corner(to_index(index > 0 ? index - 1 : index < 0 ? static_cast<std::int64_t>(soup.points.size()) + index : -1));
+      }
+      polygons.end_polygon();
+    }
+  }
+  return soup;
+}
+
+}  // namespace hybrid_mesh
