@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace hybrid_mesh {
+
+// What each file of this folder adds to the module.
+void bind_errors(pybind11::module_& module);
+void bind_mesh_io(pybind11::module_& module);
+void bind_hierarchy(pybind11::module_& module);
+void bind_remesh(pybind11::module_& module);
+void bind_job(pybind11::module_& module);
+
+}  // namespace hybrid_mesh

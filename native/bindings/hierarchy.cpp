@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bindings/hierarchy.h"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bindings/bindings.h"
+#include "bindings/conversions.h"
+#include "bindings/mesh_dict.h"
+#include "codec/container.h"
+#include "surface/topology_summary.h"
+
+namespace py = pybind11;
+
+namespace hybrid_mesh {
+namespace {
+
+// Runs something that reads the hierarchy while Python's other threads go on.
+template <typename Function>
+auto locked(const PythonHierarchy& hierarchy, Function&& function) {
+  return without_gil([&] {
+    const std::lock_guard lock(*hierarchy.mutex);
+    return function(*hierarchy.mesh);
+  });
+}
+
+struct Level {
+  LevelKind kind;
+  int number;
+  std::string name() const { return (kind == LevelKind::M ? "M" : "N") + std::to_string(number); }
+};
+
+// From the base to the finest. M^j is there only where an irregular operation separates it from N^j.
+std::vector<Level> levels_of(const HybridMesh& mesh) {
+  const int depth = mesh.depth();
+  std::vector<bool> changed(depth + 1, false);
+  for (int i = 0; i < mesh.operation_count(); ++i) {
+    const HybridMesh::Operation& operation = mesh.operation(i);
+    if (operation.enabled && operation.repatch.level <= depth) changed[operation.repatch.level] = true;
+  }
+  std::vector<Level> levels;
+  for (int j = 0; j <= depth; ++j) {
+    if (changed[j]) levels.push_back({LevelKind::M, j});
+    levels.push_back({LevelKind::N, j});
+  }
+  return levels;
+}
+
+Level find_level(const HybridMesh& mesh, const std::string& name) {
+  for (const Level& level : levels_of(mesh)) {
+    if (level.name() == name) return level;
+  }
+  throw Error(ErrorCode::InvalidInput, "there is no level " + name);
+}
+
+// Counts of a mesh for info().
+nlohmann::ordered_json counts_of(const QuadMesh& mesh) {
+  std::int64_t quads = 0, triangles = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::int64_t corners = mesh.offsets[f + 1] - mesh.offsets[f];
+    quads += corners == 4;
+    triangles += corners == 3;
+  }
+  return {{"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()}, {"quads", quads}, {"triangles", triangles}};
+}
+
+std::string info(const HybridMesh& mesh) {
+  nlohmann::ordered_json result;
+  result["base"] = {{"quads", mesh.base_count()}, {"vertices", mesh.base_vertex_count()}};
+  result["operations"] = mesh.operation_count();
+  result["maps"] = mesh.has_maps();
+  nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+  for (const Level& level : levels_of(mesh)) {
+    nlohmann::ordered_json entry;
+    entry["name"] = level.name();
+    entry.update(counts_of(mesh.level_mesh(level.number, level.kind)));
+    levels.push_back(entry);
+  }
+  result["levels"] = levels;
+  const QuadMesh final_mesh = mesh.final_mesh();
+  result["final"] = counts_of(final_mesh);
+  const TopologySummary topology = summarize_topology(to_soup(final_mesh));
+  result["final"]["genus"] = topology.genus;
+  result["final"]["components"] = topology.components;
+  result["final"]["boundary_loops"] = topology.boundary_loops;
+  return result.dump();
+}
+
+// Broken invariants of the hierarchy, its maps and its final mesh.
+std::vector<std::string> check(const HybridMesh& mesh) {
+  std::vector<std::string> defects = find_defects(mesh);
+  for (int node = 0; node < mesh.node_count(); ++node) {
+    const PatchMap* map = mesh.map(node);
+    const std::string defect = map ? find_map_defect(*map) : "";
+    if (!defect.empty()) defects.push_back("the map of node " + std::to_string(node) + ": " + defect);
+  }
+  if (!defects.empty()) return defects;
+  const QuadMesh final_mesh = mesh.final_mesh();
+  for (std::size_t v = 0; v < final_mesh.points.size(); ++v) {
+    if (!final_mesh.points[v].allFinite()) defects.push_back("vertex " + std::to_string(v) + " of the final mesh is not finite");
+  }
+  const TopologySummary topology = summarize_topology(to_soup(final_mesh));
+  const auto count = [&](std::int64_t number, const char* what) {
+    if (number != 0) defects.push_back("the final mesh has " + std::to_string(number) + " " + what);
+  };
+  count(topology.nonmanifold_edges, "edges of more than two faces");
+  count(topology.nonmanifold_vertices, "vertices of more than one fan");
+  count(topology.misoriented_edges, "edges with faces of opposite orientation");
+  return defects;
+}
+
+std::vector<std::string> level_names(const PythonHierarchy& hierarchy) {
+  std::vector<std::string> names;
+  for (const Level& level : levels_of(*hierarchy.mesh)) names.push_back(level.name());
+  return names;
+}
+
+py::dict level(const PythonHierarchy& hierarchy, const std::string& name) {
+  return to_dict(locked(hierarchy, [&](const HybridMesh& mesh) {
+    const Level level = find_level(mesh, name);
+    return annotate(mesh, mesh.level_mesh(level.number, level.kind));
+  }));
+}
+
+py::dict final_mesh(const PythonHierarchy& hierarchy) {
+  return to_dict(locked(hierarchy, [](const HybridMesh& mesh) { return annotate(mesh, mesh.final_mesh()); }));
+}
+
+void save(const PythonHierarchy& hierarchy, const py::object& path_object, const std::optional<std::string>& metadata) {
+  const std::string path = path_from_python(path_object);
+  locked(hierarchy, [&](const HybridMesh& mesh) { save_hierarchy(mesh, metadata ? *metadata : hierarchy.metadata, path); });
+}
+
+PythonHierarchy load(const py::object& path_object) {
+  const std::string path = path_from_python(path_object);
+  LoadedHierarchy loaded = without_gil([&] { return load_hierarchy(path); });
+  return {std::make_shared<const HybridMesh>(std::move(loaded.hierarchy)), std::move(loaded.metadata_json)};
+}
+
+}  // namespace
+
+void bind_hierarchy(py::module_& module) {
+  using py::arg;
+  py::class_<PythonHierarchy>(module, "Hierarchy", "The quad meshes of a remesh, level by level.")
+      .def_property_readonly("level_names", &level_names, "From the base to the finest: N0, M1, N1, ...")
+      .def("level", &level, arg("name"), "The mesh of a level, as a dict of arrays.")
+      .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
+      .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")
+      .def_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
+      .def("check", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, check); }, "What is wrong with it; empty if nothing is.")
+      .def("info", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, info); }, "Counts, as JSON text.");
+  module.def("load_hierarchy", &load, arg("path"), "Reads what Hierarchy.save() wrote.");
+}
+
+}  // namespace hybrid_mesh

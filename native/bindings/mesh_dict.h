@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "hierarchy/hybrid_mesh.h"
+
+namespace hybrid_mesh {
+
+// A mesh of the hierarchy with what Blender shows of it.
+struct AnnotatedMesh {
+  QuadMesh mesh;
+  std::vector<float> stretch;                        // #F, see LevelStretch
+  std::vector<float> anisotropy;                     // #F
+  std::vector<bool> irregular;                       // #F: under a root quad that an irregular operation made
+  std::vector<std::array<float, 2>> uv;              // #corners: patches as islands, side by side in a square grid
+  std::vector<std::int32_t> source_face;             // #V: face of the repaired surface; -1 where the maps were dropped
+  std::vector<std::array<float, 3>> source_weights;  // #V: barycentrics in it
+};
+
+AnnotatedMesh annotate(const HybridMesh& hierarchy, QuadMesh mesh);
+pybind11::dict to_dict(const AnnotatedMesh& annotated);
+
+}  // namespace hybrid_mesh

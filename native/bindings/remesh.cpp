@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bindings/remesh.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "bindings/bindings.h"
+#include "bindings/conversions.h"
+#include "bindings/job.h"
+#include "bindings/mesh_dict.h"
+#include "codec/container.h"
+#include "surface/topology_summary.h"
+
+namespace py = pybind11;
+
+namespace hybrid_mesh {
+namespace {
+
+// One entry of the settings, with the messages about it.
+class Setting {
+ public:
+  Setting(std::string key, py::handle value) : key_(std::move(key)), value_(value) {}
+
+  std::int64_t whole_number(std::int64_t least, std::int64_t most) const {
+    // Whatever has __index__, numpy's integers too, but no bool.
+    if (py::isinstance<py::bool_>(value_) || !PyIndex_Check(value_.ptr())) refuse("a whole number");
+    const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(value_.ptr()));
+    if (!index) throw py::error_already_set();
+    int overflow = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
+    if (overflow != 0 || number < least || number > most) {
+      refuse(most == std::numeric_limits<std::int64_t>::max() ? "at least " + std::to_string(least)
+                                                              : "from " + std::to_string(least) + " to " + std::to_string(most));
+    }
+    return number;
+  }
+
+  double number() const {
+    if (py::isinstance<py::bool_>(value_) || !PyNumber_Check(value_.ptr()) || py::isinstance<py::str>(value_)) refuse("a number");
+    const double number = PyFloat_AsDouble(value_.ptr());
+    if (PyErr_Occurred()) throw py::error_already_set();
+    if (!std::isfinite(number)) refuse("a finite number");
+    return number;
+  }
+
+  bool flag() const {
+    if (!py::isinstance<py::bool_>(value_)) refuse("True or False");
+    return value_.cast<bool>();
+  }
+
+  bool is(const char* word) const { return py::isinstance<py::str>(value_) && value_.cast<std::string>() == word; }
+
+  [[noreturn]] void refuse(const std::string& expected) const {
+    throw Error(ErrorCode::InvalidInput, "the setting " + key_ + " must be " + expected + ", not " + py::repr(value_).cast<std::string>());
+  }
+
+ private:
+  std::string key_;
+  py::handle value_;
+};
+
+constexpr std::int64_t kUnbounded = std::numeric_limits<std::int64_t>::max();
+
+void apply(RemeshOptions& options, const std::string& key, const Setting& setting) {
+  if (key == "vertices") {
+    options.vertices = setting.whole_number(0, kUnbounded);
+  } else if (key == "error") {
+    options.error = setting.number();
+    if (options.error < 0) setting.refuse("at least 0");
+  } else if (key == "levels") {
+    options.levels = static_cast<int>(setting.whole_number(-1, 20));
+  } else if (key == "refinement") {
+    if (setting.is("uniform")) options.refinement = Refinement::Uniform;
+    else if (setting.is("adaptive")) options.refinement = Refinement::Adaptive;
+    else setting.refuse("'uniform' or 'adaptive'");
+  } else if (key == "faces") {
+    if (setting.is("quads")) options.faces = FaceClosure::Quads;
+    else if (setting.is("transition")) options.faces = FaceClosure::Transition;
+    else if (setting.is("triangles")) options.faces = FaceClosure::Triangles;
+    else setting.refuse("'quads', 'transition' or 'triangles'");
+  } else if (key == "base") {
+    if (setting.is("auto")) {
+      options.base = BaseSize::Auto;
+    } else if (setting.is("min")) {
+      options.base = BaseSize::Minimal;
+    } else {
+      options.base = BaseSize::Given;
+      options.base_quads = static_cast<int>(setting.whole_number(1, std::numeric_limits<int>::max()));
+    }
+  } else if (key == "stretch_threshold") {
+    options.stretch_threshold = setting.number();
+    if (options.stretch_threshold <= 0) setting.refuse("greater than 0");
+  } else if (key == "semi_regular") {
+    options.semi_regular = setting.flag();
+  } else if (key == "drop_components") {
+    options.drop_components = setting.number();
+    if (!(options.drop_components >= 0 && options.drop_components < 1)) setting.refuse("at least 0 and less than 1");
+  } else if (key == "strict") {
+    options.strict = setting.flag();
+  } else if (key == "seed") {
+    options.seed = static_cast<std::uint64_t>(setting.whole_number(0, kUnbounded));
+  } else if (key == "threads") {
+    options.threads = static_cast<int>(setting.whole_number(0, 1024));
+  } else {
+    throw Error(ErrorCode::InvalidInput, "there is no setting " + key);
+  }
+}
+
+PythonResult remesh_and_wait(const py::object& points, const py::object& offsets, const py::object& indices,
+                                              const py::dict& settings) {
+  const RemeshOptions options = remesh_options_from_dict(settings);
+  const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
+  return PythonResult(run_interruptibly([&](Context& context) { return std::make_shared<RemeshResult>(remesh(soup, options, context)); }));
+}
+
+py::dict final_mesh(const PythonResult& result) {
+  return to_dict(without_gil([&] {
+    const std::lock_guard lock(*result.hierarchy.mutex);
+    return annotate(result.result->hierarchy, result.result->final_mesh);
+  }));
+}
+
+void save(const PythonResult& result, const py::object& path_object, const std::string& metadata) {
+  const std::string path = path_from_python(path_object);
+  without_gil([&] {
+    const std::lock_guard lock(*result.hierarchy.mutex);
+    save_hierarchy(result.result->hierarchy, metadata, path);
+  });
+}
+
+}  // namespace
+
+RemeshOptions remesh_options_from_dict(const py::dict& settings) {
+  RemeshOptions options;
+  for (const auto& [key, value] : settings) {
+    if (!py::isinstance<py::str>(key)) throw Error(ErrorCode::InvalidInput, "a setting's name must be text, not " + py::repr(key).cast<std::string>());
+    const auto name = key.cast<std::string>();
+    apply(options, name, Setting(name, value));
+  }
+  return options;
+}
+
+void bind_remesh(py::module_& module) {
+  using py::arg;
+  py::class_<PythonResult>(module, "Result", "What a remesh gives.")
+      .def_property_readonly("report", [](const PythonResult& result) { return result.result->report.dump(); }, "JSON text.")
+      .def_readonly("hierarchy", &PythonResult::hierarchy, "The levels.")
+      .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
+      .def("repaired", [](const PythonResult& result) { return soup_to_arrays(to_soup(result.result->repaired)); },
+           "The triangle surface that was remeshed: (points, face_offsets, face_indices).")
+      .def_property_readonly("repaired_source_faces", [](const PythonResult& result) { return to_array(result.result->repaired.source_face); },
+                             "For each face of the repaired surface the triangle of the input, as it was triangulated.")
+      .def("save", &save, arg("path"), arg("metadata") = "", "Writes the hierarchy with its maps.");
+  module.def("remesh", &remesh_and_wait, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
+             "Remeshes and returns the Result; Ctrl-C ends it.");
+}
+
+}  // namespace hybrid_mesh
