@@ -146,7 +146,7 @@ RemeshOptions remesh_options_from_dict(const py::dict& settings) {
 void bind_remesh(py::module_& module) {
   using py::arg;
   py::class_<PythonResult>(module, "Result", "What a remesh gives.")
-      .def_property_readonly("report", [](const PythonResult& result) { return result.result->report.dump(); }, "JSON text.")
+      .def_property_readonly("report", [](const PythonResult& result) { return result.result->report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); }, "JSON text.")
       .def_readonly("hierarchy", &PythonResult::hierarchy, "The levels.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def("repaired", [](const PythonResult& result) { return soup_to_arrays(to_soup(result.result->repaired)); },
