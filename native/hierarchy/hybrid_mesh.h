@@ -257,6 +257,47 @@ class HybridMesh {
   // Sorted by vertex.
   using Positions = std::vector<std::pair<VertexId, Vec3>>;
 
+  // The sector of a vertex that lies to the left of a half-edge leaving it, in the mesh of leaves up to level `cap`; `next` is the half-edge that
+  // bounds the sector on its other side. node = -1: nothing there (boundary). corner = -1: the vertex lies inside a side of the node.
+  struct Sector {
+    int node = -1, corner = -1;
+    HalfEdge next = -1;
+  };
+
+  HalfEdge half_child(HalfEdge h, int part) const {  // part 0 starts where h does
+    return 2 * (edges_[h >> 1].child + (part ^ (h & 1))) + (h & 1);
+  }
+  HalfEdge half_parent(HalfEdge h) const { return edges_[h >> 1].parent < 0 ? -1 : 2 * edges_[h >> 1].parent + (h & 1); }
+  int part_of_parent(HalfEdge h) const { return ((h >> 1) - edges_[edges_[h >> 1].parent].child) ^ (h & 1); }
+  HalfEdge descend(HalfEdge h, int cap) const;
+  Sector sector_left(HalfEdge leaving, int cap) const;   // counter-clockwise
+  Sector sector_right(HalfEdge leaving, int cap) const;  // clockwise
+  SideLink holder_or_coarser(HalfEdge h) const;
+  bool finer(HalfEdge h) const;
+  bool touches(HalfEdge h, int part) const;
+  int add_edge(VertexId from, VertexId to, int level, int origin);
+  void split_edge(int edge);
+  int split(int node);
+  void activate();
+  void count_leaves();
+  template <class Visit>
+  void visit_corner(int node, int corner, const Visit& visit) const;
+  std::string complete_sides(Repatch& repatch) const;
+  std::string validate(const Repatch& repatch) const;
+  std::vector<int> dependencies(const Repatch& repatch) const;
+  std::string insert(const Repatch& repatch, bool check_fans);
+  std::string find_fan_defect(int cap) const;
+  // The faces of a level and the loops of their corners (leaf_polygons.h).
+  struct Polygons;
+  Polygons polygons(int cap, LevelKind kind) const;
+  QuadMesh close(const Polygons& polygons, FaceClosure closure, const Positions* positions) const;
+  std::size_t vertex_slot(VertexId vertex) const {
+    const std::size_t i = vertex.index();
+    if (vertex.kind() == VertexId::Kind::Free) return i;
+    return vertex.kind() == VertexId::Kind::Edge ? free_.size() + i : free_.size() + edges_.size() + i;
+  }
+  std::size_t vertex_slots() const { return free_.size() + edges_.size() + nodes_.size(); }
+
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
   std::vector<std::int32_t> holder_;  // per half-edge: 4 * node + side of the active node that has it, -1

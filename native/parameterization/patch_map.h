@@ -26,7 +26,8 @@ struct PatchSample {
   int triangle = -1;
 };
 
-// Finds the triangle that holds (u, v) by walking from `hint`; (u, v) in [0, 1]^2.
+// Finds the triangle that holds (u, v) in [0, 1]^2 by walking from a bucket's triangle. The answer depends on (u, v) alone, and any thread may
+// ask. Keeps a pointer to the map.
 class PatchSampler {
  public:
   explicit PatchSampler(const PatchMap& map);
@@ -35,7 +36,11 @@ class PatchSampler {
  private:
   const PatchMap* map_;
   std::vector<std::array<int, 3>> neighbours_;  // across the edge opposite to corner i, -1 on a side
-  mutable int last_ = 0;
+  std::vector<int> start_;                      // triangle to start from, per bucket of a buckets_ x buckets_ grid
+  int buckets_ = 1;
+
+  int locate(double u, double v, std::array<double, 3>& weights) const;
+  int search_all(double u, double v, std::array<double, 3>& weights) const;
 };
 
 // Area of the surface under each of the n x n equal cells of the square, row by row (v outer). Exact up to rounding: the triangles are clipped.
