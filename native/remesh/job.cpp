@@ -14,9 +14,10 @@ constexpr double kLargestUnfinished = 0.999;
 
 Job::Job(Work work) : thread_([this, work = std::move(work)] { run(work); }) {}
 
-Job::~Job() {
+void Job::stop() noexcept {
   cancel();
-  thread_.join();
+  const std::lock_guard lock(join_mutex_);
+  if (thread_.joinable()) thread_.join();
 }
 
 void Job::run(const Work& work) noexcept {

@@ -19,13 +19,14 @@ class Job {
   using Work = std::function<void(Context&)>;
 
   explicit Job(Work work);
-  // Cancels the work and waits until it has ended.
-  ~Job();
+  ~Job() { stop(); }
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
   // Asks the work to end; it does so at its next check, with Error{Cancelled}. Work that has ended already is not changed.
   void cancel() noexcept { context_.cancel(); }
+  // Cancels the work and waits until its thread has ended.
+  void stop() noexcept;
   // In [0, 1], never decreasing; exactly 1 after success, and only then once the work has ended.
   double progress() const;
   const char* stage() const noexcept { return context_.stage(); }
@@ -45,7 +46,8 @@ class Job {
   mutable std::condition_variable ended_;
   bool done_ = false;         // guarded by mutex_
   std::exception_ptr error_;  // written before done_
-  std::thread thread_;        // last: starts when everything else is there
+  std::mutex join_mutex_;
+  std::thread thread_;        // guarded by join_mutex_; last: starts when everything else is there
 };
 
 }  // namespace hybrid_mesh

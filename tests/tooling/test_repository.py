@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The repository's own rules: which layer may include what, what `addon/core` may import, and what no file may say."""
+
+import ast
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+LAYERS = ["base", "surface", "parameterization", "topology", "layout", "hierarchy", "subdivision", "remesh", "codec", "bindings"]
+SOURCE = {".h", ".cpp", ".py", ".cmake"}
+
+
+def files():
+    """Everything under version control or about to be, as paths relative to the root."""
+    listed = subprocess.run(
+        ["git", "-c", "safe.directory=*", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True
+    )
+    if listed.returncode == 0:
+        names = [Path(name) for name in listed.stdout.decode().split("\0") if name]
+        return sorted({name for name in names if (ROOT / name).is_file()})
+    folders = ["native", "addon", "scripts", "tests", "blend_samples"]  # an exported tree
+    return sorted(p.relative_to(ROOT) for folder in folders for p in (ROOT / folder).rglob("*") if p.is_file())
+
+
+def text_of(path):
+    try:
+        return (ROOT / path).read_text("utf-8")
+    except UnicodeDecodeError:
+        return ""
+
+
+def includes(text):
+    return re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE)
+
+
+def upward_includes(layer, text):
+    """The includes of a file of `layer` that name a layer to its right, or no layer at all."""
+    allowed = LAYERS[: LAYERS.index(layer) + 1]
+    return [name for name in includes(text) if name.split("/")[0] not in allowed]
+
+
+def imported_modules(text):
+    names = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            names.append(node.module)
+        elif isinstance(node, ast.ImportFrom) and node.level > 1:
+            names.append("." * node.level + (node.module or ""))
+    return names
+
+
+NATIVE = [path for path in files() if path.parts[0] == "native" and path.suffix in {".h", ".cpp"}]
+CORE = [path for path in files() if path.parts[:2] == ("addon", "core") and path.suffix == ".py"]
+
+
+def test_there_is_something_to_check():
+    assert NATIVE and CORE
+
+
+def test_every_native_folder_is_a_layer():
+    assert {path.parts[1] for path in NATIVE} <= set(LAYERS)
+
+
+def test_cmake_builds_the_layers_in_this_order():
+    declared = re.findall(r"^hybrid_mesh_layer\((\w+)", text_of("native/CMakeLists.txt"), re.MULTILINE)
+    assert declared == LAYERS[:-1]
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_no_layer_includes_upwards(layer):
+    wrong = {str(path): upward_includes(layer, text_of(path)) for path in NATIVE if path.parts[1] == layer}
+    assert {path: names for path, names in wrong.items() if names} == {}
+
+
+def test_an_upward_include_is_seen():
+    assert upward_includes("surface", '#include "base/error.h"\n#include "remesh/remesh.h"\n#include <vector>\n') == ["remesh/remesh.h"]
+
+
+def test_cgal_stays_in_source_files_and_opensubdiv_in_its_layer():
+    cgal = [str(path) for path in NATIVE if path.suffix == ".h" and re.search(r"#\s*include\s*<CGAL/", text_of(path))]
+    subdivision = [str(path) for path in NATIVE if path.parts[1] != "subdivision" and re.search(r"#\s*include\s*<opensubdiv/", text_of(path))]
+    assert (cgal, subdivision) == ([], [])
+
+
+def test_core_imports_no_blender():
+    """Not even inside a function: what needs Blender is handed in."""
+    blender = {"bpy", "bmesh", "mathutils", "gpu", "blf", "bpy_extras", "addon_utils"}
+    wrong = {}
+    for path in CORE:
+        found = [name for name in imported_modules(text_of(path)) if name.split(".")[0] in blender]
+        if found:
+            wrong[str(path)] = found
+    assert wrong == {}
+
+
+def test_only_compat_asks_for_the_version():
+    addon = [path for path in files() if path.parts[0] == "addon" and path.suffix == ".py" and path.name != "compat.py"]
+    assert [str(path) for path in addon if "bpy.app.version" in text_of(path)] == []
+
+
+def test_every_source_file_names_the_licence():
+    sources = [path for path in files() if path.suffix in SOURCE or path.parts[0] == "scripts" or path.name == "CMakeLists.txt"]
+    missing = [str(path) for path in sources if text_of(path).strip() and "SPDX-License-Identifier: GPL-3.0-or-later" not in text_of(path)[:300]]
+    assert missing == []
+
+
+def test_no_file_names_a_machine():
+    """Nothing that is true on one machine only, or of the people and tools at work on it, belongs in the project."""
+    machine = re.compile(
+        "|".join([r"/" + r"work/", r"/" + r"root/", r"/" + r"home/\w", r"/" + r"Users/\w", r"/" + r"tmp/ifc", r"shared/" + r"(design|style|blender_facts)"])
+    )
+    found = [f"{path}: {match[0]}" for path in files() if path != Path("LICENSE") for match in [machine.search(text_of(path))] if match]
+    assert found == []
+
+
+def test_the_version_is_the_same_everywhere():
+    version = re.search(r"project\(hybrid_mesh VERSION ([\d.]+)", text_of("CMakeLists.txt"))[1]
+    assert re.search(r'^version = "([^"]+)"', text_of("addon/blender_manifest.toml"), re.MULTILINE)[1] == version
+    numbers = re.search(r'"version": \(([\d, ]+)\)', text_of("addon/__init__.py"))[1]
+    assert numbers.replace(" ", "").replace(",", ".") == version
+
+
+def test_scripts_are_executable():
+    scripts = [path for path in files() if path.parent == Path("scripts") and not path.suffix] + [Path(".ci/run")]
+    assert [str(path) for path in scripts if not (ROOT / path).stat().st_mode & 0o111] == []
