@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mesh objects as arrays in world space, and arrays as meshes in object space."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy
+
+from .. import compat
+from .arrays import MeshArrays, mirrors, reversed_corners, transformed, world_matrix
+
+STRETCH, STRETCH_COLOR, ANISOTROPY, PATCH, IRREGULAR, PATCH_UV = "stretch", "stretch_color", "anisotropy", "patch", "irregular", "patches"
+
+
+class SourceError(ValueError):
+    """A mesh object that cannot be remeshed; the message says why."""
+
+
+@dataclass
+class Source:
+    """What was read of an object: its evaluated surface as triangles in world space, and how to put a result back."""
+
+    mesh: MeshArrays
+    matrix: numpy.ndarray  # object to world
+    triangle_polygons: numpy.ndarray  # the polygon of each triangle
+    triangle_loops: numpy.ndarray  # (n, 3) the corners of each triangle, in its order in `mesh`
+    polygon_materials: numpy.ndarray  # the material index of each polygon
+
+
+def read_source(obj, depsgraph):
+    """The evaluated mesh of a mesh object (modifiers applied) in world space, faces counter-clockwise seen from outside there.
+
+    N-gons are cut as Blender shows them, so that source triangle t of a result is triangle t of the Source.
+    Raises SourceError or MatrixError.
+    """
+    matrix = world_matrix(obj.matrix_world)
+    evaluated = obj.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh()
+    if mesh is None:
+        raise SourceError("it has no mesh")
+    try:
+        if not mesh.polygons:
+            raise SourceError("it has no faces")
+        points = _get(mesh.vertices, "co", 3).astype(numpy.float64)
+        corners = _get(mesh.loops, "vertex_index", 1, numpy.int32)
+        mesh.calc_loop_triangles()
+        loops = _get(mesh.loop_triangles, "loops", 3, numpy.int32)
+        polygons = _get(mesh.loop_triangles, "polygon_index", 1, numpy.int32)
+        materials = _get(mesh.polygons, "material_index", 1, numpy.int32)
+    finally:
+        evaluated.to_mesh_clear()
+    if mirrors(matrix):
+        loops = loops[:, ::-1]
+    loops = numpy.ascontiguousarray(loops)
+    points = transformed(points, matrix)
+    if not numpy.isfinite(points).all():
+        raise SourceError("it has vertices at places that are not finite")
+    offsets = numpy.arange(0, 3 * len(loops) + 1, 3, dtype=numpy.int64)
+    return Source(MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, materials)
+
+
+def new_mesh(name, made, matrix):
+    """A mesh data-block from a level's MeshDict (world space), in the space of an object with this matrix."""
+    points = transformed(made["points"], numpy.linalg.inv(matrix))
+    offsets = numpy.asarray(made["offsets"], dtype=numpy.int64)
+    indices = numpy.asarray(made["indices"], dtype=numpy.int32)
+    corners = reversed_corners(offsets) if mirrors(matrix) else slice(None)
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(len(points))
+    mesh.vertices.foreach_set("co", points.astype(numpy.float32).ravel())
+    mesh.loops.add(len(indices))
+    mesh.loops.foreach_set("vertex_index", indices[corners])
+    mesh.polygons.add(len(offsets) - 1)
+    mesh.polygons.foreach_set("loop_start", offsets[:-1].astype(numpy.int32))
+    mesh.polygons.foreach_set("loop_total", numpy.diff(offsets).astype(numpy.int32))
+    mesh.polygons.foreach_set("use_smooth", numpy.ones(len(offsets) - 1, dtype=bool))
+    mesh.update(calc_edges=True)
+    if mesh.validate():
+        # What the native side promises does not hold; better said here than seen as a damaged mesh.
+        bpy.data.meshes.remove(mesh)
+        raise RuntimeError(f"{name} is not a valid mesh")
+    if "uv" in made:
+        collection, field = compat.uv_values(mesh.uv_layers.new(name=PATCH_UV))
+        collection.foreach_set(field, numpy.asarray(made["uv"], dtype=numpy.float32)[corners].ravel())
+    return mesh
+
+
+def set_attribute(mesh, name, kind, domain, values):
+    """Adds an attribute: kind FLOAT, INT, BOOLEAN, FLOAT_VECTOR, FLOAT_COLOR or BYTE_COLOR; one value (row) an element of the domain."""
+    field, width, dtype = _ATTRIBUTES[kind]
+    attribute = mesh.attributes.new(name, kind, domain)
+    values = numpy.ascontiguousarray(values, dtype=dtype)
+    if values.size != len(attribute.data) * width:
+        raise ValueError(f"attribute {name}: {values.size} numbers for {len(attribute.data)} elements of {width}")
+    attribute.data.foreach_set(field, values.ravel())
+
+
+def get_attribute(mesh, name):
+    """The values of an attribute as an array, or None."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.data_type not in _ATTRIBUTES:
+        return None
+    field, width, dtype = _ATTRIBUTES[attribute.data_type]
+    values = _get(attribute.data, field, width, dtype)
+    return values
+
+
+def mesh_arrays(mesh):
+    """A mesh data-block as it stands, polygons and all."""
+    starts = _get(mesh.polygons, "loop_start", 1, numpy.int32).astype(numpy.int64)
+    totals = _get(mesh.polygons, "loop_total", 1, numpy.int32).astype(numpy.int64)
+    corners = _get(mesh.loops, "vertex_index", 1, numpy.int32)
+    offsets = numpy.concatenate([[0], numpy.cumsum(totals)]).astype(numpy.int64)
+    order = numpy.repeat(starts - offsets[:-1], totals) + numpy.arange(offsets[-1])
+    return MeshArrays(_get(mesh.vertices, "co", 3).astype(numpy.float64), offsets, corners[order])
+
+
+_ATTRIBUTES = {
+    "FLOAT": ("value", 1, numpy.float32),
+    "INT": ("value", 1, numpy.int32),
+    "BOOLEAN": ("value", 1, bool),
+    "FLOAT_VECTOR": ("vector", 3, numpy.float32),
+    "FLOAT_COLOR": ("color", 4, numpy.float32),
+    "BYTE_COLOR": ("color", 4, numpy.float32),
+    "FLOAT2": ("vector", 2, numpy.float32),
+}
+
+
+def _get(collection, field, width, dtype=numpy.float32):
+    values = numpy.empty(len(collection) * width, dtype=dtype)
+    collection.foreach_get(field, values)
+    return values.reshape(-1, width) if width > 1 else values

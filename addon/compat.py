@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Differences between Blender versions: the only module that asks which one this is."""
+
+import bpy
+
+HAS_COMMAND_LINE = bpy.app.version >= (4, 2, 0)
+_HAS_NODE_INTERFACE = bpy.app.version >= (4, 0, 0)
+_HAS_UV_VECTORS = bpy.app.version >= (3, 5, 0)
+_HAS_PROGRESS = bpy.app.version >= (4, 0, 0)
+
+
+def uv_values(layer):
+    """The collection of a UV layer and the name of its property, for foreach_get and foreach_set."""
+    return (layer.uv, "vector") if _HAS_UV_VECTORS else (layer.data, "uv")
+
+
+def new_level_input(group, name, description, most):
+    """Adds a whole-number input in [0, most] with the default `most` to a node group."""
+    if _HAS_NODE_INTERFACE:
+        socket = group.interface.new_socket(name, description=description, in_out="INPUT", socket_type="NodeSocketInt")
+    else:
+        socket = group.inputs.new("NodeSocketInt", name)
+        socket.description = description
+    socket.min_value = 0
+    socket.max_value = most
+    socket.default_value = most
+
+
+def new_geometry_output(group):
+    if _HAS_NODE_INTERFACE:
+        group.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        group.outputs.new("NodeSocketGeometry", "Geometry")
+
+
+def input_key(group, name):
+    """The key of a node group's input in a Geometry Nodes modifier."""
+    if _HAS_NODE_INTERFACE:
+        items = (item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT")
+    else:
+        items = group.inputs
+    return next(item.identifier for item in items if item.name == name)
+
+
+def draw_progress(layout, factor, text):
+    if _HAS_PROGRESS:
+        layout.progress(factor=factor, text=text)
+    else:
+        layout.label(text=f"{text} {factor:.0%}")
+
+
+def shade_smooth_by_default(mesh):
+    """Smooth shading of every face, as a sculptor expects of a scan."""
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+
+
+def register_command_line(name, function):
+    """Makes `blender --command NAME ARGS` call function(list of arguments) -> exit code. Returns a handle or None before 4.2."""
+    return bpy.utils.register_cli_command(name, function) if HAS_COMMAND_LINE else None
+
+
+def unregister_command_line(handle):
+    if handle is not None:
+        bpy.utils.unregister_cli_command(handle)

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A batch of inputs: each in a process of its own, outputs that appear complete or not at all, and a summary."""
+
+import json
+import os
+import shutil
+import tempfile
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+
+from . import inputs as input_files
+from . import report as reports
+from .native import explain
+from .process import Processes, WorkerFailed
+from .settings import RemeshSettings
+from .version import VERSION
+from .worker import write_text
+
+
+@dataclass
+class BatchOptions:
+    folder: str  # where the outputs go
+    settings: RemeshSettings
+    outputs: input_files.Outputs
+    jobs: int = 1  # inputs at once
+    timeout: float = 0  # seconds an input; 0 = none
+    resume: bool = False  # leave out inputs that are done
+
+
+class OutputError(OSError):
+    """The output folder cannot be used; nothing has been started."""
+
+
+class Batch:
+    """One run. `show` and `fail` get a line for people for every input that is done or failed."""
+
+    def __init__(self, options, show, fail):
+        self.options = options
+        self.show = show
+        self.fail = fail
+        self.processes = Processes()
+        self.rows = []
+        self._staging = ""
+
+    def run(self, paths):
+        """Does every input. Returns how many failed. Raises InputsError or OutputError before anything is started."""
+        folder = self.options.folder
+        new = not os.path.isdir(folder)
+        try:
+            os.makedirs(folder, exist_ok=True)
+            # Beside the outputs, so that a finished file is moved there by a rename within one file system.
+            self._staging = tempfile.mkdtemp(prefix=".hybrid-mesh-", dir=folder)
+        except OSError as error:
+            raise OutputError(f"cannot write to {folder}: {error.strerror or error}") from error
+        try:
+            items = self._expand(paths)
+            input_files.refuse_clashes(items, self.options.outputs, folder)
+            failed = self._run_all(items)
+            try:
+                self._write_summary()
+            except OSError as error:
+                self.fail(f"cannot write {os.path.join(folder, 'summary.csv')}: {explain(error)}")
+                failed += 1
+            return failed
+        finally:
+            self.processes.end()
+            shutil.rmtree(self._staging, ignore_errors=True)
+            if new and os.path.isdir(folder) and not os.listdir(folder):
+                os.rmdir(folder)
+
+    def _expand(self, paths):
+        items = []
+        for number, path in enumerate(paths):
+            if input_files.is_blend(path) and not os.path.isdir(path):
+                items += self._objects(path, number)
+            else:
+                items.append(input_files.file_input(path))
+        return items
+
+    def _objects(self, path, number):
+        folder = os.path.join(self._staging, f"objects{number}")
+        failed = input_files.Input(path, os.path.splitext(os.path.basename(path))[0])
+        try:
+            os.mkdir(folder)
+            job = {"kind": "extract", "path": path, "folder": folder}
+            found = self.processes.run(job, self.options.timeout, needs_bpy=True)["objects"]
+        except (WorkerFailed, OSError) as error:
+            failed.error = explain(error, path)
+            return [failed]
+        if not found:
+            failed.error = "holds no mesh object"
+            return [failed]
+        items = []
+        for entry in found:
+            item = input_files.object_input(path, entry["name"], entry.get("arrays", ""))
+            item.error = entry.get("error", "")
+            items.append(item)
+        return items
+
+    def _run_all(self, items):
+        failed = 0
+        rows = {}
+        executor = ThreadPoolExecutor(max_workers=self.options.jobs)
+        try:
+            waiting = {executor.submit(self._one, number, item): number for number, item in enumerate(items)}
+            pending = set(waiting)
+            while pending:
+                # In slices, so that Ctrl-C is noticed at once on every platform.
+                done, pending = wait(pending, timeout=0.2, return_when=FIRST_COMPLETED)
+                for future in done:
+                    row = future.result()
+                    rows[waiting[future]] = row
+                    failed += row["status"] == "failed"
+        except BaseException:
+            self.processes.end()
+            executor.shutdown(wait=False, cancel_futures=True)
+            raise
+        executor.shutdown()
+        self.rows = [rows[number] for number in range(len(items))]
+        return failed
+
+    def _one(self, number, item):
+        """Does one input; every way of failing becomes a row and a line."""
+        try:
+            status, report = self._do(number, item)
+        except Exception as error:  # An input that fails, in whatever way, must not keep the others from being done.
+            return self._failed(item, explain(error, item.path))
+        if status == "skipped":
+            self.show(f"{item.label}: done before, skipped")
+        else:
+            self.show(f"{item.label}: {_figures(report)}")
+        return reports.summary_row(item.name, item.label, status, report)
+
+    def _do(self, number, item):
+        options = self.options
+        if item.error:
+            raise WorkerFailed(item.error)
+        settings = options.settings.reported()
+        fingerprint = reports.resume_hash(reports.file_chunks(item.arrays or item.path), settings, VERSION)
+        if options.resume:
+            report = self._finished(item, fingerprint)
+            if report:
+                return "skipped", report
+        folder = os.path.join(self._staging, str(number))
+        os.mkdir(folder)
+        job = {
+            "kind": "remesh", "path": item.path, "object": item.object_name, "arrays": item.arrays, "name": item.name, "folder": folder,
+            "settings": options.settings.native(), "exports": list(options.outputs.exports), "repaired": options.outputs.repaired,
+            "hash": fingerprint,
+        }  # fmt: skip
+        report = self.processes.run(job, options.timeout)["report"]
+        if options.outputs.blend:
+            stem = os.path.join(folder, item.name)
+            job = {
+                "kind": "write_blend", "path": item.path, "hmesh": stem + ".hmesh", "report": stem + ".report.json", "name": item.name,
+                "target": stem + ".blend",
+            }  # fmt: skip
+            self.processes.run(job, options.timeout, needs_bpy=True)
+        for suffix in options.outputs.suffixes():
+            os.replace(os.path.join(folder, item.name + suffix), os.path.join(options.folder, item.name + suffix))
+        shutil.rmtree(folder, ignore_errors=True)
+        return "done", report
+
+    def _finished(self, item, fingerprint):
+        """The report of an earlier run of the same input, settings and version whose outputs all stand, or None."""
+        for suffix in self.options.outputs.suffixes():
+            if not os.path.isfile(os.path.join(self.options.folder, item.name + suffix)):
+                return None
+        try:
+            with open(os.path.join(self.options.folder, item.name + ".report.json"), encoding="utf-8", errors="surrogateescape") as file:
+                report = json.load(file)
+        except (OSError, ValueError):
+            return None
+        return report if isinstance(report, dict) and report.get("hash") == fingerprint and "error" not in report else None
+
+    def _failed(self, item, cause):
+        if self.processes.ended:
+            return reports.summary_row(item.name, item.label, "failed", error="interrupted")
+        self.fail(f"{item.label}: {cause}")
+        report = {"input": {"file": os.path.basename(item.path)}, "error": cause, "version": VERSION, "settings": self.options.settings.reported()}
+        try:
+            self._write_whole(item.name + ".report.json", reports.to_json(report))
+        except OSError:
+            pass  # The line on stderr has said it; a full disk takes no report of itself.
+        return reports.summary_row(item.name, item.label, "failed", error=cause)
+
+    def _write_summary(self):
+        self._write_whole("summary.csv", reports.summary_csv(self.rows))
+
+    def _write_whole(self, name, text):
+        temporary = os.path.join(self._staging, name)
+        write_text(temporary, text)
+        os.replace(temporary, os.path.join(self.options.folder, name))
+
+
+def _figures(report):
+    final = reports.quality(report)
+    parts = [f"{final['vertices']:,} vertices"]
+    parts.append(f"{final['quads']:,} quads")
+    if final["l2"] is not None:
+        parts.append(f"L2 {final['l2']:.2e}")
+    if final["hausdorff"] is not None:
+        parts.append(f"Hausdorff {final['hausdorff']:.2e}")
+    parts.append(f"{report['seconds']['total']:.1f} s")
+    return ", ".join(parts)

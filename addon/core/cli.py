@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: one `main`, whether it is reached through Blender or through `python3 -m hybrid_mesh`."""
+
+import argparse
+import json
+import os
+import signal
+import sys
+
+from . import inputs as input_files
+from .batch import Batch, BatchOptions, OutputError
+from .process import Processes, WorkerFailed, bpy_available
+from .settings import FACES, RemeshSettings, SettingsError
+from .version import VERSION
+
+DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
+LATER_COMMANDS = ("encode", "decode", "bench")
+LATER_OPTIONS = ("--plan", "--symmetry", "--features", "--topology")
+PROGRAM = "hybrid-mesh"
+
+
+def main(argv=None):
+    """Runs the command line and ends the process with its exit code."""
+    sys.exit(run(arguments_of_process() if argv is None else argv))
+
+
+def arguments_of_process():
+    """This command line's part of sys.argv: in Blender what follows `--`."""
+    bpy = sys.modules.get("bpy")
+    if bpy and bpy.app.binary_path:
+        return sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    return sys.argv[1:]
+
+
+def run(argv):
+    """Does what the arguments say and returns the exit code: 0 done, 1 an input failed, 2 wrong arguments, 130 interrupted."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    _interruptible()
+    try:
+        arguments = _parser().parse_args(_known(list(argv)))
+        return arguments.command(arguments)
+    except (WrongArguments, SettingsError, input_files.InputsError) as error:
+        _fail(str(error))
+        return WRONG_ARGUMENTS
+    except KeyboardInterrupt:
+        _fail("interrupted")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read the output has gone; nothing more can be said there, also not at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return FAILED
+    except SystemExit as end:  # argparse: --help and --version
+        return end.code or DONE
+
+
+class WrongArguments(ValueError):
+    pass
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise WrongArguments(f"{message} ({self.prog} --help says more)")
+
+
+def remesh(arguments):
+    settings = RemeshSettings(
+        vertices=arguments.vertices or 0,
+        error=arguments.error or 0.0,
+        levels=-1 if arguments.levels is None else arguments.levels,
+        refinement="adaptive" if arguments.adaptive else "uniform",
+        faces=arguments.faces,
+        base=arguments.base_quads,
+        stretch_threshold=arguments.stretch,
+        semi_regular=arguments.semi_regular,
+        drop_components=arguments.drop_components,
+        strict=arguments.strict,
+        seed=arguments.seed,
+        threads=arguments.threads,
+    ).validate()
+    outputs = input_files.Outputs(exports=arguments.export, repaired=arguments.export_repaired, blend=arguments.blend)
+    if not bpy_available():
+        for path in arguments.inputs:
+            if input_files.is_blend(path):
+                raise WrongArguments(f"{path}: a .blend can be read inside Blender only; this is Python without Blender")
+        if outputs.blend:
+            raise WrongArguments("--blend needs Blender; this is Python without Blender")
+    options = BatchOptions(arguments.output, settings, outputs, arguments.jobs, arguments.timeout, arguments.resume)
+    batch = Batch(options, _show, _fail)
+    try:
+        return FAILED if batch.run(arguments.inputs) else DONE
+    except OutputError as error:
+        _fail(str(error))
+        return FAILED
+
+
+def compare(arguments):
+    job = {"kind": "compare", "paths": [arguments.a, arguments.b], "samples": arguments.samples}
+    return _answer(job, arguments.timeout, "", lambda answer: _print_json(answer["distance"]))
+
+
+def info(arguments):
+    job = {"kind": "info", "path": arguments.file, "check": arguments.check}
+
+    def show(answer):
+        problems = answer.get("problems", [])
+        _print_json({**answer["info"], "problems": problems} if arguments.check else answer["info"])
+        for problem in problems:
+            _fail(f"{arguments.file}: {problem}")
+        return FAILED if problems else DONE
+
+    return _answer(job, arguments.timeout, f"{arguments.file}: ", show)
+
+
+def _answer(job, timeout, label, show):
+    processes = Processes()
+    try:
+        return show(processes.run(job, timeout)) or DONE
+    except WorkerFailed as error:
+        _fail(f"{label}{error}")
+        return FAILED
+    finally:
+        processes.end()
+
+
+def _known(argv):
+    """The arguments, unless they ask for what this version does not have yet."""
+    if argv and argv[0] in LATER_COMMANDS:
+        raise WrongArguments(f"{argv[0]} comes with a later version; there are remesh, compare and info")
+    for argument in argv:
+        if argument.split("=")[0] in LATER_OPTIONS:
+            raise WrongArguments(f"{argument.split('=')[0]} comes with a later version")
+    return argv
+
+
+def _parser():
+    parser = _Parser(prog=PROGRAM, description="Multiresolution quad remeshing of scans.", allow_abbrev=False)
+    parser.add_argument("--version", action="version", version=f"{PROGRAM} {VERSION}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
+
+    command = commands.add_parser("remesh", help="a quad hierarchy of every input", allow_abbrev=False)
+    command.set_defaults(command=remesh)
+    command.add_argument("inputs", nargs="+", metavar="INPUT", help=".ply, .obj, .off, .stl; in Blender also .blend (each mesh object is an input)")
+    command.add_argument("--output", required=True, metavar="DIR", help="folder for NAME.hmesh, NAME.report.json and summary.csv")
+    bounds = command.add_argument_group("bounds", "without any, the remesh has as many vertices as the input")
+    bounds.add_argument("--vertices", type=_whole(1), metavar="N", help="hard upper bound on the final mesh's vertices")
+    bounds.add_argument("--error", type=_positive, metavar="E", help="stop at this L2 distance, a fraction of the bounding-box diagonal")
+    bounds.add_argument("--levels", type=_whole(0), metavar="N", help="exactly (with --adaptive: at most) so many regular levels")
+    shape = command.add_argument_group("quads")
+    shape.add_argument("--adaptive", action="store_true", help="smaller quads where the shape needs them; else one size everywhere")
+    shape.add_argument("--faces", choices=FACES, default="quads", help="adaptive: pure quads (default), n-gons or triangles where sizes meet")
+    shape.add_argument("--base-quads", type=_base, default="auto", metavar="auto|min|N", help="quads of the base domain (default auto: fits the budget)")
+    shape.add_argument("--stretch", type=float, default=4.0, metavar="X", help="grow skin where the map is stretched more than this (default 4)")
+    shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
+    shape.add_argument("--seed", type=_whole(0), default=1, metavar="N", help="of what is arbitrary (default 1)")
+    surface = command.add_argument_group("input surface")
+    surface.add_argument("--drop-components", type=float, default=0.0, metavar="AREA", help="remove components below this fraction of the area")
+    surface.add_argument("--strict", action="store_true", help="refuse input that needs repair")
+    written = command.add_argument_group("output")
+    written.add_argument("--export", type=_exports, default=(), metavar="ply,obj", help="write the final mesh in these formats")
+    written.add_argument("--export-repaired", action="store_true", help="write the repaired input too")
+    written.add_argument("--blend", action="store_true", help="write NAME.blend with the levels (in Blender)")
+    running = command.add_argument_group("running")
+    running.add_argument("--jobs", type=_whole(1), default=1, metavar="N", help="inputs at once, each in a process of its own (default 1)")
+    running.add_argument("--threads", type=_whole(0), default=0, metavar="N", help="threads for each input (default 0: all cores)")
+    running.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which an input has failed")
+    running.add_argument("--resume", action="store_true", help="skip inputs that are done with the same settings and version")
+
+    command = commands.add_parser("compare", help="distances between two meshes", allow_abbrev=False)
+    command.set_defaults(command=compare)
+    command.add_argument("a", metavar="A", help="the reference: distances are fractions of its bounding-box diagonal")
+    command.add_argument("b", metavar="B")
+    command.add_argument("--samples", type=_whole(1), default=200000, metavar="N", help="a direction (default 200000)")
+    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+
+    command = commands.add_parser("info", help="what a .hmesh holds", allow_abbrev=False)
+    command.set_defaults(command=info)
+    command.add_argument("file", metavar="FILE.hmesh")
+    command.add_argument("--check", action="store_true", help="verify invariants, topology and every stored map")
+    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+
+    for name in LATER_COMMANDS:
+        commands.add_parser(name, help="(comes with a later version)")
+    return parser
+
+
+def _whole(least):
+    def parse(text):
+        try:
+            value = int(text)
+        except ValueError:
+            value = least - 1
+        if value < least:
+            raise argparse.ArgumentTypeError(f"must be a whole number of at least {least}, not {text!r}")
+        return value
+
+    return parse
+
+
+def _positive(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a number above 0, not {text!r}")
+    return value
+
+
+def _base(text):
+    return text if text in ("auto", "min") else _whole_or_word(text)
+
+
+def _whole_or_word(text):
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be auto, min or a whole number, not {text!r}") from None
+
+
+def _exports(text):
+    formats = tuple(dict.fromkeys(text.lower().split(",")))
+    for form in formats:
+        if form not in input_files.EXPORT_FORMATS:
+            raise argparse.ArgumentTypeError(f"knows {', '.join(input_files.EXPORT_FORMATS)}, not {form!r}")
+    return formats
+
+
+def _print_json(values):
+    _show(json.dumps(values, indent=1, ensure_ascii=False))
+
+
+def _show(line):
+    print(line, flush=True)
+
+
+def _fail(line):
+    print(f"{PROGRAM}: {line}", file=sys.stderr, flush=True)
+
+
+def _interruptible():
+    """Ctrl-C and a polite kill end the run at once; Blender replaces Python's own handler."""
+    try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+    except ValueError:
+        pass  # Not in the main thread: whoever runs this handles signals.

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The compiled module, imported when it is first needed so that this package can be imported without it."""
+
+import os
+
+
+class NativeMissing(RuntimeError):
+    """The compiled module is not beside this package or does not fit this Python."""
+
+
+def native():
+    """The module `_native`; raises NativeMissing saying what to do."""
+    try:
+        from .. import _native
+    except ImportError as error:
+        raise NativeMissing(f"the compiled module hybrid_mesh._native cannot be loaded ({error}); scripts/build makes it") from error
+    return _native
+
+
+def native_path(path):
+    """A path in the form that the module takes: text, or bytes where the name is not valid UTF-8."""
+    path = os.fspath(path)
+    try:
+        path.encode("utf-8")
+    except UnicodeEncodeError:
+        return os.fsencode(path)
+    return path
+
+
+def explain(error, path=None):
+    """One line for people that says what went wrong, whatever was raised. `path` is left out of it: the caller names the input."""
+    kind = type(error).__name__
+    text = " ".join(str(error).split())
+    if isinstance(error, OSError) and error.strerror:
+        text = error.strerror if error.filename is None or error.filename == path else f"{error.filename}: {error.strerror}"
+    elif isinstance(error, MemoryError):
+        text = "not enough memory"
+    elif kind == "InternalError":
+        text = f"internal error: {text}"
+    elif not _expected(error):
+        text = f"internal error: {kind}: {text}"
+    if path is not None:
+        for name in (os.fspath(path), os.path.basename(path)):
+            text = text.removeprefix(f"{name}: ")
+    return text or kind
+
+
+def _expected(error):
+    if isinstance(error, (NativeMissing, ValueError)):
+        return True
+    return any(base.__name__ == "Error" for base in type(error).__mro__)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reports: the JSON beside every remesh, the summary of a batch, and the figures that a panel shows."""
+
+import csv
+import hashlib
+import io
+import json
+import sys
+
+SUMMARY_COLUMNS = (
+    "name", "input", "status", "error", "input_vertices", "input_faces", "base_quads", "levels", "vertices", "quads", "l2", "hausdorff",
+    "boundary_hausdorff", "irregular_vertices", "regular_fraction", "scaled_jacobian_min", "scaled_jacobian_p05", "scaled_jacobian_p50",
+    "inverted", "seconds", "peak_memory_bytes",
+)  # fmt: skip
+
+
+def to_json(report):
+    """Deterministic, readable JSON text that ends with a line break."""
+    return json.dumps(report, indent=1, ensure_ascii=False) + "\n"
+
+
+def resume_hash(chunks, settings, version):
+    """What tells a finished input from one to be done again: its bytes, the settings and the version.
+
+    chunks: bytes-like pieces of the input in order; settings: RemeshSettings.reported().
+    """
+    digest = hashlib.sha256()
+    digest.update(json.dumps([version, settings], sort_keys=True).encode())
+    for chunk in chunks:
+        digest.update(chunk)
+    return digest.hexdigest()
+
+
+def file_chunks(path, size=1 << 20):
+    with open(path, "rb") as file:
+        while chunk := file.read(size):
+            yield chunk
+
+
+def irregular_count(final):
+    """Irregular vertices of a final mesh, whatever made them."""
+    counts = final.get("irregular_vertices", 0)
+    return sum(counts.values()) if isinstance(counts, dict) else counts
+
+
+def quality(report):
+    """The figures that people judge a remesh by, from a report; missing ones are None."""
+    final = report.get("final", {})
+    jacobian = final.get("scaled_jacobian", {})
+    return {
+        "vertices": final.get("vertices"),
+        "quads": final.get("quads"),
+        "triangles": final.get("triangles"),
+        "l2": final.get("l2"),
+        "hausdorff": final.get("hausdorff"),
+        "boundary_hausdorff": final.get("boundary_hausdorff"),
+        "irregular_vertices": irregular_count(final),
+        "regular_fraction": final.get("regular_fraction"),
+        "scaled_jacobian_min": jacobian.get("min"),
+        "scaled_jacobian_p05": jacobian.get("p05"),
+        "scaled_jacobian_p50": jacobian.get("p50"),
+        "inverted": jacobian.get("inverted"),
+    }
+
+
+def summary_row(name, source, status, report=None, error=""):
+    """One line of summary.csv as a dictionary; status is done, skipped or failed."""
+    row = dict.fromkeys(SUMMARY_COLUMNS, "")
+    row.update(name=name, input=source, status=status, error=error)
+    if report and "final" in report:
+        row.update({key: value for key, value in quality(report).items() if key in row and value is not None})
+        row["input_vertices"] = report.get("input", {}).get("vertices", "")
+        row["input_faces"] = report.get("input", {}).get("faces", "")
+        row["base_quads"] = report.get("base", {}).get("quads", "")
+        row["levels"] = len(report.get("levels", []))
+        row["seconds"] = report.get("seconds", {}).get("total", "")
+        row["peak_memory_bytes"] = report.get("peak_memory_bytes", "")
+    return row
+
+
+def summary_csv(rows):
+    text = io.StringIO()
+    writer = csv.DictWriter(text, SUMMARY_COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def level_table(report):
+    """Lines of a table of the levels, for people."""
+    lines = [f"{'level':<8}{'vertices':>10}{'quads':>10}{'irregular':>11}{'L2':>12}{'Hausdorff':>12}"]
+    for level in report.get("levels", []):
+        lines.append(
+            f"{_level_name(level):<8}{level.get('vertices', 0):>10,}{level.get('quads', 0):>10,}"
+            f"{irregular_count(level):>11,}{_scientific(level.get('l2')):>12}{_scientific(level.get('hausdorff')):>12}"
+        )
+    return lines
+
+
+def peak_memory_bytes():
+    """The largest resident size of this process so far, or None where the system does not say."""
+    try:
+        # Not ru_maxrss: Linux carries the parent's value over into the process it starts.
+        with open("/proc/self/status", encoding="ascii", errors="replace") as status:
+            for line in status:
+                if line.startswith("VmHWM:"):
+                    return int(line.split()[1]) * 1024
+    except OSError:
+        pass
+    try:
+        import resource
+    except ImportError:
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024
+
+
+def _level_name(level):
+    name = level.get("level", "")
+    return name if isinstance(name, str) else f"N{name}"
+
+
+def _scientific(value):
+    return "" if value is None else f"{value:.2e}"

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of a remesh, checked in one place for the command line, the operator and scripts."""
+
+import math
+from dataclasses import asdict, dataclass, fields, replace
+
+REFINEMENTS = ("uniform", "adaptive")
+FACES = ("quads", "transition", "triangles")
+BASES = ("auto", "min")
+
+MAXIMUM_VERTICES = 2**31 - 1
+MAXIMUM_LEVELS = 15
+MAXIMUM_BASE_QUADS = 10_000_000
+MAXIMUM_SEED = 2**64 - 1
+MAXIMUM_THREADS = 1024
+
+# How an option is called where the user typed it; the command line's name is the one people look up.
+OPTION_NAMES = {
+    "vertices": "--vertices",
+    "error": "--error",
+    "levels": "--levels",
+    "refinement": "--adaptive",
+    "faces": "--faces",
+    "base": "--base-quads",
+    "stretch_threshold": "--stretch",
+    "semi_regular": "--semi-regular",
+    "drop_components": "--drop-components",
+    "strict": "--strict",
+    "seed": "--seed",
+    "threads": "--threads",
+}
+
+
+class SettingsError(ValueError):
+    """A setting out of its bounds; the message names the option and the bounds."""
+
+
+@dataclass(frozen=True)
+class RemeshSettings:
+    vertices: int = 0  # hard upper bound on the final mesh's vertices; 0 = none
+    error: float = 0.0  # stop at this l2, relative to the bounding-box diagonal; 0 = none
+    levels: int = -1  # uniform: exactly, adaptive: at most so many regular levels; -1 = as many as are needed
+    refinement: str = "uniform"
+    faces: str = "quads"  # what becomes of leaves with hanging nodes (adaptive)
+    base: object = "auto"  # "auto", "min" or a number of base quads
+    stretch_threshold: float = 4.0  # above it irregular operations grow skin
+    semi_regular: bool = False  # no irregular operations
+    drop_components: float = 0.0  # components below this fraction of the area are removed
+    strict: bool = False  # refuse input that needs repair
+    seed: int = 1
+    threads: int = 0  # 0 = all cores; never changes the result
+
+    def validate(self):
+        """Returns self; raises SettingsError naming the first option that is out of bounds."""
+        _whole("vertices", self.vertices, 0, MAXIMUM_VERTICES, "0 for no bound, or")
+        _number("error", self.error, 0, 1, "at least 0 and below 1 (a fraction of the bounding-box diagonal)", open_end=True)
+        _whole("levels", self.levels, -1, MAXIMUM_LEVELS, "-1 for as many as are needed, or")
+        _choice("refinement", self.refinement, REFINEMENTS)
+        _choice("faces", self.faces, FACES)
+        if isinstance(self.base, str):
+            if self.base not in BASES:
+                raise SettingsError(f"--base-quads must be auto, min or a whole number from 1 to {MAXIMUM_BASE_QUADS}, not {self.base!r}")
+        else:
+            _whole("base", self.base, 1, MAXIMUM_BASE_QUADS, "auto, min or")
+        _number("stretch_threshold", self.stretch_threshold, 1, 1e6, "from 1 to 1000000")
+        _number("drop_components", self.drop_components, 0, 1, "at least 0 and below 1 (a fraction of the whole area)", open_end=True)
+        _whole("seed", self.seed, 0, MAXIMUM_SEED)
+        _whole("threads", self.threads, 0, MAXIMUM_THREADS, "0 for all cores, or")
+        return self
+
+    def native(self):
+        """The dictionary that the native module takes."""
+        return asdict(self)
+
+    def reported(self):
+        """What the report states and the resume hash covers: everything that can change the result."""
+        values = asdict(self)
+        del values["threads"]
+        return values
+
+
+PRESETS = {
+    "draft": ("Draft", "A light uniform mesh for blocking and tests", RemeshSettings(vertices=5000)),
+    "standard": ("Standard", "A uniform mesh for sculpting and retouching", RemeshSettings(vertices=20000)),
+    "detailed": ("Detailed", "A uniform mesh that keeps the fine detail of a scan", RemeshSettings(vertices=80000)),
+    "adaptive": ("Adaptive", "Small quads only where the shape needs them", RemeshSettings(vertices=20000, refinement="adaptive")),
+}
+
+
+def preset(name):
+    """The settings of a preset; raises SettingsError naming the presets there are."""
+    if name not in PRESETS:
+        raise SettingsError(f"there is no preset {name!r}; there are {', '.join(PRESETS)}")
+    return PRESETS[name][2]
+
+
+def from_mapping(values, base=RemeshSettings()):
+    """Settings from a dictionary; unknown names are refused."""
+    known = {field.name for field in fields(RemeshSettings)}
+    for name in values:
+        if name not in known:
+            raise SettingsError(f"there is no setting {name!r}")
+    return replace(base, **values).validate()
+
+
+def _whole(name, value, least, most, prefix=""):
+    bounds = f"{prefix + ' ' if prefix else ''}a whole number from {max(least, 0)} to {most}"
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise SettingsError(f"{OPTION_NAMES[name]} must be {bounds}, not {value!r}")
+
+
+def _number(name, value, least, most, bounds, open_end=False):
+    inside = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value) and least <= value <= most
+    if not inside or (open_end and value == most):
+        raise SettingsError(f"{OPTION_NAMES[name]} must be {bounds}, not {value!r}")
+
+
+def _choice(name, value, choices):
+    if value not in choices:
+        raise SettingsError(f"{OPTION_NAMES[name]} must be one of {', '.join(choices)}, not {value!r}")

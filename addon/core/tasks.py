@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pieces of native work done one after another."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from .native import explain
+
+
+@dataclass
+class Task:
+    """One piece of native work for something that has a name. Holds no bpy data: those may go while the work runs."""
+
+    name: str
+    start: Any  # () -> native Job
+    note: Any = None  # what the operator wants to know again when the result is there
+
+
+class TaskRun:
+    """Tasks one after another, each over all cores."""
+
+    def __init__(self, tasks):
+        self.tasks = list(tasks)
+        self.results = []  # (task, result)
+        self.errors = []  # (task, one line)
+        self._job = None
+        self._next = 0
+
+    @property
+    def done(self):
+        return self._job is None and self._next == len(self.tasks)
+
+    @property
+    def progress(self):
+        finished = self._next - (self._job is not None)
+        return (finished + (self._job.progress if self._job else 0)) / max(len(self.tasks), 1)
+
+    @property
+    def status(self):
+        if self._job is None:
+            return ""
+        task = self.tasks[self._next - 1]
+        return f"{task.name}: {self._job.stage}" if self._job.stage else task.name
+
+    def step(self):
+        """Starts the next task or takes a finished one's result; never waits."""
+        if self._job is not None:
+            if not self._job.done:
+                return
+            self._take(self._job)
+            self._job = None
+        if self._next < len(self.tasks):
+            task = self.tasks[self._next]
+            self._next += 1
+            try:
+                self._job = task.start()
+            except Exception as error:  # Reported by whoever runs the tasks.
+                self.errors.append((task, explain(error)))
+
+    def wait(self):
+        """Does everything; Ctrl-C gets through."""
+        try:
+            while not self.done:
+                self.step()
+                if self._job is not None:
+                    while not self._job.wait(0.1):
+                        pass
+        except BaseException:
+            self.cancel()
+            raise
+
+    def cancel(self):
+        if self._job is not None:
+            self._job.cancel()
+            self._job.wait()
+            self._job = None
+        self._next = len(self.tasks)
+
+    def _take(self, job):
+        task = self.tasks[self._next - 1]
+        try:
+            self.results.append((task, job.result()))
+        except Exception as error:  # Reported by whoever runs the tasks.
+            self.errors.append((task, explain(error)))

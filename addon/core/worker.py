@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a child process does: one job, one answer. Jobs are dictionaries with a `kind`."""
+
+import json
+import os
+import sys
+import threading
+import time
+
+from . import report as reports
+from . import settings as settings_module
+from .native import explain, native, native_path
+from .process import RESULT_MARK
+from .version import VERSION
+
+
+def main():
+    """Reads a job from stdin, does it, writes the answer; returns the exit code."""
+    job = json.loads(_first_line())
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    try:
+        answer = JOBS[job["kind"]](job)
+    except Exception as error:  # Everything becomes one line: the parent has nothing else to show.
+        answer = {"error": explain(error, job.get("path"))}
+    sys.stdout.flush()
+    # Straight to the descriptor: where Python's stdout is block-buffered or replaced the answer must not be lost.
+    os.write(1, ("\n" + RESULT_MARK + json.dumps(answer) + "\n").encode())
+    return 0
+
+
+def remesh(job):
+    """Remeshes one input into the staging folder: every output complete, or an error."""
+    began = time.monotonic()
+    module = native()
+    if job.get("arrays"):
+        mesh = _load_arrays(job["arrays"])
+    else:
+        _refuse_unreadable(job["path"])
+        mesh = module.read_mesh(native_path(job["path"]))
+    read = time.monotonic()
+    settings = settings_module.from_mapping(job["settings"])
+    result = module.remesh(*mesh, settings.native())
+    worked = time.monotonic()
+
+    stem = os.path.join(job["folder"], job["name"])
+    report = finished_report(result.report, job, settings)
+    result.hierarchy.save(native_path(stem + ".hmesh"), json.dumps({"name": job["name"], "settings": settings.reported(), "version": VERSION}))
+    if job["exports"]:
+        final = result.final_mesh()
+        for form in job["exports"]:
+            module.write_mesh(native_path(f"{stem}.{form}"), final["points"], final["offsets"], final["indices"])
+    if job["repaired"]:
+        repaired = result.repaired()[:3]
+        for form in job["exports"] or ["ply"]:
+            module.write_mesh(native_path(f"{stem}.repaired.{form}"), *repaired)
+    seconds = {"read": round(read - began, 4), **report.get("seconds", {})}
+    seconds["write"] = round(time.monotonic() - worked, 4)
+    seconds.pop("total", None)  # the native part's; here is the whole, and it stands last
+    seconds["total"] = round(time.monotonic() - began, 4)
+    report["seconds"] = seconds
+    report["peak_memory_bytes"] = reports.peak_memory_bytes()
+    write_text(stem + ".report.json", reports.to_json(report))
+    return {"report": report}
+
+
+def finished_report(text, job, settings):
+    """The native report with what only the command line knows, in the order that people read it in."""
+    made = json.loads(text)
+    source = {"file": os.path.basename(job["path"])}
+    if job.get("object"):
+        source["object"] = job["object"]
+    report = {"input": {**source, **made.pop("input", {})}}
+    report.update(made)
+    report["version"] = VERSION
+    report["settings"] = settings.reported()
+    report["hash"] = job["hash"]
+    return report
+
+
+def compare(job):
+    module = native()
+    meshes = []
+    for path in job["paths"]:
+        job["path"] = path
+        try:
+            _refuse_unreadable(path)
+            meshes.append(module.read_mesh(native_path(path)))
+        except Exception as error:
+            return {"error": f"{path}: {explain(error, path)}"}
+    return {"distance": module.compare(*meshes[0][:3], *meshes[1][:3], job["samples"])}
+
+
+def info(job):
+    module = native()
+    _refuse_unreadable(job["path"])
+    hierarchy = module.load_hierarchy(native_path(job["path"]))
+    answer = {"info": json.loads(hierarchy.info())}
+    if job["check"]:
+        answer["problems"] = list(hierarchy.check())
+    return answer
+
+
+def extract(job):
+    """Every mesh object of a .blend as arrays in a folder. Needs bpy."""
+    from ..bridge import blend_files
+
+    _refuse_unreadable(job["path"])
+    return {"objects": blend_files.extract(job["path"], job["folder"])}
+
+
+def write_blend(job):
+    """A .blend with the levels of a hierarchy. Needs bpy."""
+    from ..bridge import blend_files
+
+    with open(job["report"], encoding="utf-8", errors="surrogateescape") as file:
+        report = json.load(file)
+    blend_files.write(job["hmesh"], job["name"], report, job["target"])
+    return {}
+
+
+def write_text(path, text):
+    with open(path, "w", encoding="utf-8", errors="surrogateescape", newline="\n") as file:
+        file.write(text)
+
+
+JOBS = {"remesh": remesh, "compare": compare, "info": info, "extract": extract, "write_blend": write_blend}
+
+
+def _refuse_unreadable(path):
+    # The operating system's own words, before a reader finds some of its own.
+    with open(path, "rb") as file:
+        if not file.read(1):
+            raise ValueError("the file is empty")
+
+
+def _load_arrays(path):
+    import numpy
+
+    with numpy.load(path) as arrays:
+        return arrays["points"], arrays["offsets"], arrays["indices"]
+
+
+def _first_line():
+    line = b""
+    while not line.endswith(b"\n"):
+        piece = os.read(0, 1)
+        if not piece:
+            break
+        line += piece
+    return line
+
+
+def _end_with_parent():
+    while os.read(0, 4096):
+        pass
+    os._exit(1)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import bpy
+
+from ...bridge import levels
+from . import properties
+
+
+class HYBRID_MESH_PT_levels(bpy.types.Panel):
+    bl_idname = "HYBRID_MESH_PT_levels"
+    bl_label = "Levels"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Hybrid Mesh"
+    bl_order = 1
+
+    @classmethod
+    def poll(cls, context):
+        return properties.hierarchy_of(context.object) is not None
+
+    def draw(self, context):
+        layout = self.layout
+        collection = properties.hierarchy_of(context.object)
+        report = properties.report_of(collection)
+        layout.label(text=collection.name, icon="OUTLINER_COLLECTION")
+        preview = collection.hybrid_mesh.preview
+        if preview is not None:
+            levels.draw_level(layout, preview)
+        self._quality(layout, properties.quality_of(collection))
+        self._levels(layout, report)
+
+    def _quality(self, layout, quality):
+        column = layout.column(align=True)
+        for label, text in quality_lines(quality):
+            row = column.split(factor=0.5)
+            row.label(text=label)
+            row.label(text=text)
+
+    def _levels(self, layout, report):
+        if not report.get("levels"):
+            return
+        box = layout.box().column(align=True)
+        for level in report["levels"]:
+            row = box.row()
+            name = level.get("level")
+            row.label(text=name if isinstance(name, str) else f"N{name}")
+            row.label(text=f"{level.get('vertices', 0):,}")
+            row.label(text=_fraction(level.get("l2")))
+
+
+def quality_lines(quality):
+    """(label, text) of the read-out, without what was not measured."""
+    lines = [
+        ("Vertices", _count(quality["vertices"])),
+        ("Quads", _count(quality["quads"])),
+        ("L2", _fraction(quality["l2"])),
+        ("Hausdorff", _fraction(quality["hausdorff"])),
+        ("Irregular vertices", _count(quality["irregular_vertices"])),
+        ("Scaled Jacobian, 5 %", _plain(quality["scaled_jacobian_p05"])),
+        ("Scaled Jacobian, median", _plain(quality["scaled_jacobian_p50"])),
+        ("Inverted quads", _count(quality["inverted"])),
+    ]
+    return [(label, text) for label, text in lines if text]
+
+
+def _count(value):
+    return "" if value is None else f"{value:,}"
+
+
+def _fraction(value):
+    return "" if value is None else f"{value:.2e}"
+
+
+def _plain(value):
+    return "" if value is None else f"{value:.3f}"

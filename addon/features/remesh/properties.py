@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of a remesh as Blender properties, one set for the operator and for the panel."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from ...core import settings as core
+
+REFINEMENTS = (
+    ("UNIFORM", "Uniform", "One quad size everywhere, irregular vertices at the base domain's only"),
+    ("ADAPTIVE", "Adaptive", "Smaller quads where the shape needs them"),
+)
+FACES = (
+    ("QUADS", "Quads", "Pure quads without cracks"),
+    ("TRANSITION", "Transition", "N-gons where two sizes meet"),
+    ("TRIANGLES", "Triangles", "Triangles where two sizes meet"),
+)
+BASES = (
+    ("AUTO", "Automatic", "Fits the base domain to the vertex budget"),
+    ("MIN", "Minimal", "As few base quads as the surface allows"),
+    ("GIVEN", "Given", "A given number of base quads"),
+)
+
+
+class RemeshProperties:
+    """Mix-in for whatever has the settings of a remesh as properties."""
+
+    vertices: IntProperty(
+        name="Vertices", description="Hard upper bound on the final mesh's vertices; 0 takes as many as the source has", default=20000, min=0,
+        soft_max=1_000_000,
+    )  # fmt: skip
+    error: FloatProperty(
+        name="Error", description="Stop at this L2 distance, as a fraction of the bounding-box diagonal; 0 for no bound", default=0, min=0,
+        max=0.5, precision=6, step=0.001,
+    )  # fmt: skip
+    levels: IntProperty(
+        name="Levels", description="Regular levels above the base domain: exactly (uniform) or at most (adaptive); -1 for as many as are needed",
+        default=-1, min=-1, max=core.MAXIMUM_LEVELS,
+    )  # fmt: skip
+    refinement: EnumProperty(name="Refinement", description="How quad sizes are chosen", items=REFINEMENTS, default="UNIFORM")
+    faces: EnumProperty(name="Faces", description="What is made where quads of two sizes meet", items=FACES, default="QUADS")
+    base: EnumProperty(name="Base", description="How many quads the base domain has", items=BASES, default="AUTO")
+    base_quads: IntProperty(name="Base Quads", description="Quads of the base domain", default=300, min=1, max=core.MAXIMUM_BASE_QUADS, soft_max=5000)
+    stretch: FloatProperty(
+        name="Stretch", description="Grow skin where the map is stretched more than this", default=4, min=1, max=1e6, soft_max=20
+    )
+    semi_regular: BoolProperty(name="Semi-Regular", description="No irregular operations: the topology and layout of the base domain on every level")
+    drop_components: FloatProperty(
+        name="Drop Components", description="Remove components with less than this fraction of the whole area", default=0, min=0, max=0.99, precision=4
+    )
+    strict: BoolProperty(name="Strict", description="Refuse a surface that needs repair instead of repairing it")
+    seed: IntProperty(name="Seed", description="Of what is arbitrary", default=1, min=0)
+    threads: IntProperty(name="Threads", description="0 for all cores; never changes the result", default=0, min=0, max=core.MAXIMUM_THREADS)
+
+
+SETTING_NAMES = tuple(RemeshProperties.__annotations__)
+
+
+class HybridMeshScene(RemeshProperties, bpy.types.PropertyGroup):
+    hide_source: BoolProperty(name="Hide Source", description="Hide the source in the viewport, so that the result is seen", default=True)
+
+
+def core_settings(properties):
+    """The RemeshSettings that properties stand for; raises SettingsError."""
+    return core.RemeshSettings(
+        vertices=properties.vertices,
+        error=properties.error,
+        levels=properties.levels,
+        refinement=properties.refinement.lower(),
+        faces=properties.faces.lower(),
+        base=properties.base_quads if properties.base == "GIVEN" else properties.base.lower(),
+        stretch_threshold=properties.stretch,
+        semi_regular=properties.semi_regular,
+        drop_components=properties.drop_components,
+        strict=properties.strict,
+        seed=properties.seed,
+        threads=properties.threads,
+    ).validate()
+
+
+def apply_settings(properties, settings):
+    """Sets properties to RemeshSettings."""
+    given = not isinstance(settings.base, str)
+    properties.vertices = settings.vertices
+    properties.error = settings.error
+    properties.levels = settings.levels
+    properties.refinement = settings.refinement.upper()
+    properties.faces = settings.faces.upper()
+    properties.base = "GIVEN" if given else settings.base.upper()
+    if given:
+        properties.base_quads = settings.base
+    properties.stretch = settings.stretch_threshold
+    properties.semi_regular = settings.semi_regular
+    properties.drop_components = settings.drop_components
+    properties.strict = settings.strict
+    properties.seed = settings.seed
+    properties.threads = settings.threads
+
+
+def draw_settings(layout, properties):
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    column = layout.column()
+    column.prop(properties, "refinement", expand=True)
+    column.prop(properties, "vertices")
+    column.prop(properties, "error")
+    column.prop(properties, "levels")
+    if properties.refinement == "ADAPTIVE":
+        column.prop(properties, "faces")
+
+
+def draw_advanced(layout, properties):
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    column = layout.column()
+    column.prop(properties, "base")
+    if properties.base == "GIVEN":
+        column.prop(properties, "base_quads")
+    column.prop(properties, "stretch")
+    column.prop(properties, "semi_regular")
+    column.prop(properties, "drop_components")
+    column.prop(properties, "strict")
+    column.prop(properties, "seed")
+    column.prop(properties, "threads")
+
+
+def register():
+    bpy.types.Scene.hybrid_mesh = PointerProperty(type=HybridMeshScene)
+
+
+def unregister():
+    del bpy.types.Scene.hybrid_mesh

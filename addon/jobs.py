@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long work in native threads: one base operator, and the places where no thread may outlive Blender's data."""
+
+import atexit
+
+import bpy
+
+from .core.native import NativeMissing, native
+from .core.tasks import TaskRun
+
+POLL_SECONDS = 0.05
+# What may go on while a job runs: looking around. Everything else could change what the job's result is put beside.
+_NAVIGATION = {
+    "MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE",
+    "MOUSESMARTZOOM", "NDOF_MOTION", "TIMER_REPORT", "TIMER_REGION", "WINDOW_DEACTIVATE",
+}  # fmt: skip
+
+
+class NativeJobOperator(bpy.types.Operator):
+    """Base of operators with long native work.
+
+    Subclasses have prepare(context) -> [Task], which may raise ValueError with a line for people, and finish(context, results), which
+    puts all results into the scene at once; so that one that is cancelled has changed nothing. In a window it is modal and Esc ends it;
+    from scripts and in the background it returns when the work is done.
+    """
+
+
+    _run = None
+    _timer = None
+
+    def prepare(self, context):
+        raise NotImplementedError
+
+    def finish(self, context, results):
+        raise NotImplementedError
+
+    def execute(self, context):
+        run = self._prepare(context)
+        if run is None:
+            return {"CANCELLED"}
+        run.wait()
+        return self._conclude(context, run)
+
+    def invoke(self, context, event):
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        if running():
+            self.report({"WARNING"}, "Another job is running; Esc ends it")
+            return {"CANCELLED"}
+        run = self._prepare(context)
+        if run is None:
+            return {"CANCELLED"}
+        self._run = run
+        _runs.add(run)
+        self._timer = context.window_manager.event_timer_add(POLL_SECONDS, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        run.step()
+        self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        run = self._run
+        if run not in _runs:  # Ended from outside, by unregister for one.
+            self._leave(context)
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS":
+            self._leave(context)
+            run.cancel()
+            self.report({"INFO"}, "Cancelled; nothing was changed")
+            return {"CANCELLED"}
+        if event.type == "TIMER":
+            run.step()
+            if run.done:
+                self._leave(context)
+                return self._conclude(context, run)
+            self._show(context)
+            return {"PASS_THROUGH"}
+        return {"PASS_THROUGH"} if event.type in _NAVIGATION else {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender ends the operator: another file is loaded, or the window is closed."""
+        if self._run is not None:
+            self._run.cancel()
+        self._leave(context)
+
+    def _prepare(self, context):
+        try:
+            native()
+            return TaskRun(self.prepare(context))
+        except (ValueError, NativeMissing) as error:
+            self.report({"ERROR"}, str(error))
+            return None
+
+    def _conclude(self, context, run):
+        made = False
+        errors = [f"{task.name}: {cause}" for task, cause in run.errors]
+        if run.results:
+            try:
+                self.finish(context, run.results)
+                made = True
+            except ValueError as error:
+                errors.append(str(error))
+        if errors:
+            self.report({"ERROR"}, "\n".join(errors))
+        return {"FINISHED"} if made else {"CANCELLED"}
+
+    def _show(self, context):
+        context.workspace.status_text_set(f"{self._run.status}   {self._run.progress:.0%}   (Esc cancels)")
+        context.window_manager.progress_update(int(self._run.progress * 100))
+
+    def _leave(self, context):
+        _runs.discard(self._run)
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
+            context.window_manager.progress_end()
+            if context.workspace:
+                context.workspace.status_text_set(None)
+
+
+_runs = set()
+
+
+def running():
+    """Whether a modal job runs in a window."""
+    return bool(_runs)
+
+
+def end_all():
+    """Cancels and joins every job. Nothing native runs when this returns, whatever it was doing."""
+    for run in list(_runs):
+        run.cancel()
+    _runs.clear()
+    try:
+        native().shutdown_jobs()
+    except NativeMissing:
+        pass
+
+
+@bpy.app.handlers.persistent
+def _before_load(*_):
+    end_all()
+
+
+def register():
+    atexit.register(end_all)
+    bpy.app.handlers.load_pre.append(_before_load)
+
+
+def unregister():
+    end_all()
+    atexit.unregister(end_all)
+    if _before_load in bpy.app.handlers.load_pre:
+        bpy.app.handlers.load_pre.remove(_before_load)

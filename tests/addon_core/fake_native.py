@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stands in for the compiled module where a test is about the Python around it.
+
+Every surface becomes the box around it. What an input's file name says happens: crash, hang, refuse.
+"""
+
+import json
+import os
+import threading
+import time
+
+import numpy
+
+__version__ = "0.1.0"
+
+
+class Error(Exception):
+    pass
+
+
+class InvalidInput(Error):
+    pass
+
+
+class Unsupported(Error):
+    pass
+
+
+class Cancelled(Error):
+    pass
+
+
+class CorruptStream(Error):
+    pass
+
+
+class IoError(Error):
+    pass
+
+
+class InternalError(Error):
+    pass
+
+
+SETTINGS = {
+    "vertices", "error", "levels", "refinement", "faces", "base", "stretch_threshold", "semi_regular", "drop_components", "strict", "seed",
+    "threads",
+}  # fmt: skip
+
+
+def read_mesh(path):
+    name = os.path.basename(os.fsdecode(path))
+    if "crash" in name:
+        os.abort()
+    if "hang" in name:
+        time.sleep(600)
+    if "refuse" in name:
+        raise InvalidInput(f"{os.fsdecode(path)}: no faces")
+    points, offsets, indices = [], [0], []
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            words = line.split()
+            if words[:1] == ["v"]:
+                points.append([float(word) for word in words[1:4]])
+            elif words[:1] == ["f"]:
+                indices += [int(word) - 1 for word in words[1:]]
+                offsets.append(len(indices))
+    return numpy.array(points, dtype=float).reshape(-1, 3), numpy.array(offsets, dtype=numpy.int64), numpy.array(indices, dtype=numpy.int32)
+
+
+def write_mesh(path, points, offsets, indices):
+    with open(path, "w", encoding="utf-8") as file:
+        for point in points:
+            file.write("v %r %r %r\n" % tuple(float(value) for value in point))
+        for begin, end in zip(offsets[:-1], offsets[1:]):
+            file.write("f " + " ".join(str(int(index) + 1) for index in indices[begin:end]) + "\n")
+
+
+def topology(points, offsets, indices):
+    return {"vertices": len(numpy.unique(indices)), "faces": len(offsets) - 1}
+
+
+def compare(points_a, offsets_a, indices_a, points_b, offsets_b, indices_b, samples=200000):
+    return {"l2": float(numpy.abs(points_a.mean(0) - points_b.mean(0)).max()), "hausdorff": 0.0}
+
+
+CUBE = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=float)
+QUADS = numpy.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+
+
+def box(low, high, level):
+    """A box of 6 * 4^level quads as a MeshDict."""
+    points, quads, patch = CUBE, QUADS, numpy.arange(6)
+    for _ in range(level):
+        points, quads, patch = split(points, quads, patch)
+    count = len(quads)
+    return {
+        "points": low + points * (high - low),
+        "offsets": numpy.arange(0, 4 * count + 1, 4, dtype=numpy.int64),
+        "indices": quads.ravel().astype(numpy.int32),
+        "stretch": numpy.linspace(0.25, 4, count, dtype=numpy.float32),
+        "anisotropy": numpy.ones(count, dtype=numpy.float32),
+        "patch": patch.astype(numpy.int32),
+        "irregular": patch == 0,
+        "uv": numpy.tile(numpy.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=numpy.float32), (count, 1)),
+        "source_face": numpy.zeros(len(points), dtype=numpy.int32),
+        "source_weights": numpy.full((len(points), 3), 1 / 3, dtype=numpy.float32),
+    }
+
+
+def split(points, quads, patch):
+    places = {}
+    points = [tuple(point) for point in points]
+    for number, point in enumerate(points):
+        places[tuple(numpy.round(point, 9))] = number
+
+    def at(corners):
+        middle = numpy.mean([points[corner] for corner in corners], axis=0)
+        key = tuple(numpy.round(middle, 9))
+        if key not in places:
+            places[key] = len(points)
+            points.append(tuple(middle))
+        return places[key]
+
+    made = []
+    for a, b, c, d in quads:
+        ab, bc, cd, da, middle = at((a, b)), at((b, c)), at((c, d)), at((d, a)), at((a, b, c, d))
+        made += [[a, ab, middle, da], [ab, b, bc, middle], [middle, bc, c, cd], [da, middle, cd, d]]
+    return numpy.array(points), numpy.array(made), numpy.repeat(patch, 4)
+
+
+class Hierarchy:
+    def __init__(self, low, high, levels, metadata=""):
+        self.low, self.high, self.count, self.metadata = numpy.asarray(low, float), numpy.asarray(high, float), levels, metadata
+
+    @property
+    def level_names(self):
+        return [f"N{level}" for level in range(self.count)]
+
+    def level(self, name):
+        return box(self.low, self.high, int(name[1:]))
+
+    def final_mesh(self):
+        return box(self.low, self.high, self.count - 1)
+
+    def save(self, path, metadata=""):
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump([self.low.tolist(), self.high.tolist(), self.count, metadata], file)
+
+    def check(self):
+        return [] if (self.high > self.low).all() else ["the box is empty"]
+
+    def info(self):
+        return json.dumps({"levels": self.level_names, "metadata": self.metadata})
+
+
+def load_hierarchy(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return Hierarchy(*json.load(file))
+    except (ValueError, TypeError) as error:
+        raise CorruptStream(f"{os.fsdecode(path)}: not a hierarchy") from error
+
+
+class Result:
+    def __init__(self, mesh, settings):
+        points, offsets, indices = mesh
+        levels = settings["levels"] + 1 if settings["levels"] >= 0 else 3
+        self.hierarchy = Hierarchy(points.min(0), points.max(0), levels)
+        self._mesh = mesh
+        final = self.final_mesh()
+        count = len(final["offsets"]) - 1
+        self.report = json.dumps({
+            "input": {"vertices": len(points), "faces": len(offsets) - 1},
+            "base": {"quads": 6, "vertices": 8},
+            "levels": [
+                {"level": level, "vertices": 6 * 4**level + 2, "quads": 6 * 4**level, "l2": 1e-3, "hausdorff": 1e-2, "irregular_vertices": 8}
+                for level in range(levels)
+            ],
+            "final": {
+                "vertices": len(final["points"]), "quads": count, "triangles": 0, "l2": 1e-3, "hausdorff": 1e-2,
+                "irregular_vertices": {"base": 8, "operations": 0, "transitions": 0},
+                "scaled_jacobian": {"min": 1, "p05": 1, "p50": 1, "inverted": 0},
+            },
+            "seconds": {"base": 0.1, "total": 0.1},
+        })  # fmt: skip
+
+    def final_mesh(self):
+        return self.hierarchy.final_mesh()
+
+    def repaired(self):
+        return self._mesh
+
+
+def remesh(points, offsets, indices, settings):
+    for name in settings:
+        if name not in SETTINGS:
+            raise InvalidInput(f"unknown setting {name}")
+    if settings["vertices"] and settings["vertices"] < 8:
+        raise InvalidInput("the surface cannot be represented with fewer than 8 vertices")
+    return Result((points, offsets, indices), settings)
+
+
+class Job:
+    """Takes HYBRID_MESH_FAKE_SECONDS, then has its result."""
+
+    def __init__(self, mesh, settings):
+        self._cancelled, self._settings, self._mesh = threading.Event(), settings, mesh
+        self._began, self._seconds = time.monotonic(), float(os.environ.get("HYBRID_MESH_FAKE_SECONDS", "0.1"))
+        self._thread = threading.Thread(target=self._cancelled.wait, args=(self._seconds,), daemon=True)
+        self._thread.start()
+
+    @property
+    def progress(self):
+        return min(1.0, (time.monotonic() - self._began) / max(self._seconds, 1e-9))
+
+    @property
+    def stage(self):
+        return "waiting"
+
+    @property
+    def done(self):
+        return not self._thread.is_alive()
+
+    def cancel(self):
+        self._cancelled.set()
+
+    def wait(self, timeout_s=None):
+        self._thread.join(timeout_s)
+        return self.done
+
+    def result(self):
+        self.wait()
+        if self._cancelled.is_set():
+            raise Cancelled("cancelled")
+        return remesh(*self._mesh, self._settings)
+
+
+def start_remesh(points, offsets, indices, settings):
+    return Job((points, offsets, indices), settings)
+
+
+def shutdown_jobs():
+    pass
