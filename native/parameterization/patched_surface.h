@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surface/triangle_surface.h"
+
+namespace hybrid_mesh {
+
+// A patch and one of its four sides; patch -1: none.
+struct PatchSide {
+  int patch = -1;
+  int side = 0;
+};
+
+// A point of the repaired surface as a combination of one, two or three of its points (the corners of a face); unused ones are -1 with weight 0.
+struct PointSource {
+  std::array<int, 3> vertices{-1, -1, -1};
+  std::array<double, 3> weights{0, 0, 0};
+};
+
+// Weights of `source` for the corners of a face that holds it.
+inline std::array<double, 3> weights_in_face(const PointSource& source, const std::array<int, 3>& face) {
+  std::array<double, 3> w{0, 0, 0};
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (source.vertices[k] == face[i] && face[i] >= 0) w[i] += source.weights[k];
+  return w;
+}
+
+// A surface cut into disk-shaped quadrilateral patches along its own edges. It covers the repaired surface exactly: each face lies on one face of that.
+struct PatchedSurface {
+  TriangleSurface mesh;                // source_face: face of the repaired surface
+  std::vector<PointSource> source;     // per point
+  std::vector<int> patch;              // per face
+  std::vector<std::array<int, 4>> nodes;              // per patch: base nodes, counter-clockwise
+  std::vector<std::array<PatchSide, 4>> neighbours;   // per patch and side
+  std::vector<std::array<std::vector<int>, 4>> sides; // per patch and side: the points along it, both ends included
+  int node_count = 0;
+
+  int patch_count() const { return static_cast<int>(nodes.size()); }
+};
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surface/edit_mesh.h"
+
+namespace hybrid_mesh {
+
+EditMesh::EditMesh(const TriangleSurface& surface) {
+  const int faces = static_cast<int>(surface.faces.size());
+  origin.resize(3 * faces);
+  opposite = surface.opposite;
+  edge.assign(3 * faces, -1);
+  out.assign(surface.points.size(), -1);
+  alive.assign(faces, 1);
+  vertex_live.assign(surface.points.size(), 0);
+  face_count = faces;
+  for (int h = 0; h < 3 * faces; ++h) {
+    origin[h] = surface.from(h);
+    if (edge[h] < 0) {
+      edge[h] = edge_count++;
+      if (opposite[h] >= 0) edge[opposite[h]] = edge[h];
+    }
+  }
+  for (int h = 0; h < 3 * faces; ++h)
+    if (out[origin[h]] < 0 || opposite[h] < 0) out[origin[h]] = h;
+  for (std::size_t v = 0; v < out.size(); ++v)
+    if (out[v] >= 0) {
+      vertex_live[v] = 1;
+      ++vertex_count;
+    }
+}
+
+int EditMesh::valence(int v) const {
+  int n = 0;
+  int h = out[v];
+  do {
+    ++n;
+    const int g = ccw(h);
+    if (g < 0) return n + 1;
+    h = g;
+  } while (h != out[v]);
+  return n;
+}
+
+void EditMesh::ring(int v, std::vector<int>& vertices) const {
+  vertices.clear();
+  int h = out[v];
+  do {
+    vertices.push_back(to(h));
+    const int g = ccw(h);
+    if (g < 0) {
+      vertices.push_back(apex(h));
+      return;
+    }
+    h = g;
+  } while (h != out[v]);
+}
+
+int EditMesh::find(int a, int b) const {
+  int h = out[a];
+  do {
+    if (to(h) == b) return h;
+    h = ccw(h);
+  } while (h >= 0 && h != out[a]);
+  return -1;
+}
+
+void EditMesh::fix_out(int v, int h) {
+  out[v] = h;
+  for (int g = cw(h); g >= 0; g = cw(g)) {
+    if (g == h) return;
+    out[v] = g;
+  }
+}
+
+bool EditMesh::can_collapse(int h) const {
+  const int v = from(h), u = to(h), o = opposite[h];
+  const int a = apex(h), b = o >= 0 ? apex(o) : -1;
+  const bool v_boundary = is_boundary(v);
+  if (v_boundary && o >= 0) {
+    return false;  // a boundary vertex moves along the boundary only; such an edge has a face on one side
+  }
+  // An edge whose only face is on the other side is reached through that face's half-edge, which leaves u, not v.
+  if (opposite[next(h)] < 0 && opposite[prev(h)] < 0) return false;
+  if (o >= 0 && opposite[next(o)] < 0 && opposite[prev(o)] < 0) return false;
+  const auto too_thin = [&](int w) { return !is_boundary(w) && valence(w) <= 3; };
+  if (too_thin(a) || (b >= 0 && too_thin(b))) return false;
+  // A tetrahedron, or v in the middle of a face whose mirror image exists.
+  if (!v_boundary && !is_boundary(u) && valence(v) == 3 && valence(u) == 3) return false;
+  // The link condition: the only common neighbours are the apexes.
+  int g = out[v];
+  do {
+    const int w = to(g);
+    if (w != u && w != a && w != b && adjacent(u, w)) return false;
+    const int n = ccw(g);
+    if (n < 0) {
+      const int last = apex(g);
+      if (last != u && last != a && last != b && adjacent(u, last)) return false;
+      break;
+    }
+    g = n;
+  } while (g != out[v]);
+  // At a valence-3 vertex the new face (u, a, b) must not exist already.
+  if (!v_boundary && valence(v) == 3) {
+    const int e = find(u, b);
+    if (e >= 0 && apex(e) == a) return false;
+  }
+  return true;
+}
+
+void EditMesh::collapse(int h) {
+  const int v = from(h), u = to(h), o = opposite[h];
+  int g = out[v];
+  const int first = g;
+  do {
+    const int n = ccw(g);
+    if (g != h && g / 3 != (o >= 0 ? o / 3 : -1)) origin[g] = u;
+    g = n;
+  } while (g >= 0 && g != first);
+  const auto glue = [&](int kept, int lost) {  // half-edges of a dead face: its edge at u, its edge at v
+    const int x = opposite[kept], y = opposite[lost];
+    if (x >= 0) opposite[x] = y;
+    if (y >= 0) {
+      opposite[y] = x;
+      edge[y] = edge[kept];
+    }
+  };
+  const int f = h / 3;
+  const int a = apex(h), h1 = next(h), h2 = prev(h);
+  glue(h1, h2);
+  alive[f] = 0;
+  --face_count;
+  const int x = opposite[h1], y = opposite[h2];
+  int leaving_u = y >= 0 ? y : next(x);
+  if (out[a] / 3 == f) fix_out(a, x >= 0 ? x : next(y));
+  if (o >= 0) {
+    const int b = apex(o), o1 = next(o), o2 = prev(o);
+    glue(o2, o1);
+    alive[o / 3] = 0;
+    --face_count;
+    const int x2 = opposite[o1], y2 = opposite[o2];
+    if (out[b] / 3 == o / 3) fix_out(b, x2 >= 0 ? x2 : next(y2));
+    if (leaving_u < 0) leaving_u = x2 >= 0 ? next(x2) : y2;
+  }
+  fix_out(u, leaving_u);
+  vertex_live[v] = 0;
+  --vertex_count;
+}
+
+void EditMesh::undo_collapse(int h) {
+  const int v = from(h), u = to(h), o = opposite[h];
+  const auto unglue = [&](int kept, int lost) {
+    const int x = opposite[kept], y = opposite[lost];
+    if (x >= 0) opposite[x] = kept;
+    if (y >= 0) {
+      opposite[y] = lost;
+      edge[y] = edge[lost];
+    }
+  };
+  unglue(next(h), prev(h));
+  alive[h / 3] = 1;
+  ++face_count;
+  if (o >= 0) {
+    unglue(prev(o), next(o));
+    alive[o / 3] = 1;
+    ++face_count;
+  }
+  vertex_live[v] = 1;
+  ++vertex_count;
+  int g = h;
+  do {
+    origin[g] = v;
+    const int n = ccw(g);
+    if (n < 0) break;
+    g = n;
+  } while (g != h);
+  if (g != h || ccw(g) < 0) {
+    for (g = cw(h); g >= 0 && g != h; g = cw(g)) origin[g] = v;
+  }
+  fix_out(v, h);
+  fix_out(u, next(h));
+  fix_out(apex(h), prev(h));
+  if (o >= 0) fix_out(apex(o), prev(o));
+}
+
+bool EditMesh::can_flip(int h) const {
+  const int o = opposite[h];
+  if (o < 0) return false;
+  return !adjacent(apex(h), apex(o));
+}
+
+void EditMesh::flip(int h) {
+  const int o = opposite[h];
+  const int n = next(h), p = prev(h), on = next(o), op = prev(o);
+  const int a = origin[h], b = origin[o], c = origin[p], d = origin[op];
+  const int x_n = opposite[n], x_p = opposite[p], x_on = opposite[on], x_op = opposite[op];
+  const int e_n = edge[n], e_p = edge[p], e_on = edge[on], e_op = edge[op];
+  origin[h] = d, origin[n] = c, origin[p] = a;
+  origin[o] = c, origin[on] = d, origin[op] = b;
+  const auto link = [&](int x, int y, int name) {
+    opposite[x] = y;
+    edge[x] = name;
+    if (y >= 0) opposite[y] = x;
+  };
+  link(n, x_p, e_p);
+  link(p, x_on, e_on);
+  link(on, x_op, e_op);
+  link(op, x_n, e_n);
+  fix_out(a, p);
+  fix_out(b, op);
+  fix_out(c, n);
+  fix_out(d, on);
+}
+
+void EditMesh::undo_flip(int h) {
+  for (int i = 0; i < 3; ++i) flip(h);
+}
+
+}  // namespace hybrid_mesh
