@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+
+namespace hybrid_mesh::tolerance {
+
+// A triangle is degenerate if its height is below this multiple of its largest coordinate: the rounding of its corners alone may have given
+// it the area it has. The same for a shape wherever it stands and however large it is, as far as the numbers can hold it.
+inline constexpr double degenerate_height = 4 * std::numeric_limits<double>::epsilon();
+
+}  // namespace hybrid_mesh::tolerance
