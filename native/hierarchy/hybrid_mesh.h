@@ -229,7 +229,8 @@ class HybridMesh {
   HybridMesh canonical() const;
 
  private:
-  friend class HierarchyAccess;  // reading and writing files, checking invariants
+  friend class HierarchyAccess;   // checks invariants
+  friend class HierarchyArchive;  // takes apart and puts together
 
   struct Node {
     std::array<HalfEdge, 4> half{-1, -1, -1, -1};
