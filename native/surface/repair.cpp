@@ -60,7 +60,7 @@ std::vector<int> RepairMesh::components(int& count) const {
 
 namespace {
 
-// The triangles of the soup over merged points, without those that have a corner twice and without duplicates.
+// The triangles of the soup over merged points, without those that have a corner twice.
 RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
   const Triangulation triangulation = triangulate(soup);
   if (triangulation.triangles.size() > static_cast<std::size_t>(std::numeric_limits<int>::max() / 3))
@@ -80,8 +80,6 @@ RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
   mesh.points = scaled(soup.points, scale_exponent(soup.points));
   mesh.origin.resize(point_count);
   for (int p = 0; p < point_count; ++p) mesh.origin[p] = p;
-  // Duplicates are found among the faces with the same smallest corner.
-  std::vector<int> count(static_cast<std::size_t>(point_count) + 1, 0);
   for (std::size_t t = 0; t < triangulation.triangles.size(); ++t) {
     const auto& triangle = triangulation.triangles[t];
     const std::array<int, 3> face{first[triangle[0]], first[triangle[1]], first[triangle[2]]};
@@ -91,34 +89,8 @@ RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
     }
     mesh.faces.push_back(face);
     mesh.source.push_back(static_cast<int>(t));
-    ++count[*std::min_element(face.begin(), face.end()) + 1];
   }
-  struct Key {
-    int middle, largest, face;
-  };
-  for (int v = 0; v < point_count; ++v) count[v + 1] += count[v];
-  std::vector<Key> keys(mesh.faces.size());
-  std::vector<int> fill(count.begin(), count.end() - 1);
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    std::array<int, 3> sorted = mesh.faces[f];
-    std::sort(sorted.begin(), sorted.end());
-    keys[fill[sorted[0]]++] = {sorted[1], sorted[2], static_cast<int>(f)};
-  }
-  std::vector<char> keep(mesh.faces.size(), 1);
-  for (int v = 0; v < point_count; ++v) {
-    std::sort(keys.begin() + count[v], keys.begin() + count[v + 1], [](const Key& a, const Key& b) {
-      return a.middle != b.middle ? a.middle < b.middle : a.largest != b.largest ? a.largest < b.largest : a.face < b.face;
-    });
-    for (int i = count[v] + 1; i < count[v + 1]; ++i)
-      if (keys[i].middle == keys[i - 1].middle && keys[i].largest == keys[i - 1].largest) {
-        keep[keys[i].face] = 0;
-        ++report.duplicate_faces;
-      }
-  }
-  if (report.duplicate_faces > 0) {
-    mesh.mate.assign(3 * mesh.faces.size(), -1);
-    mesh.keep_faces(keep);
-  }
+  mesh.mate.assign(3 * mesh.faces.size(), -1);
   if (mesh.faces.empty())
     throw Error(ErrorCode::InvalidInput, "all " + std::to_string(triangulation.triangles.size()) + " faces are degenerate");
   return mesh;
@@ -174,8 +146,9 @@ TriangleSurface repair(const PolygonSoup& soup, const RepairOptions& options, Re
   report = {};
   progress(0);
   RepairMesh mesh = gather(soup, report);
-  const std::int64_t triangle_count = static_cast<std::int64_t>(mesh.faces.size()) + report.degenerate_faces + report.duplicate_faces;
+  const std::int64_t triangle_count = static_cast<std::int64_t>(mesh.faces.size()) + report.degenerate_faces;
   progress(0.3);
+  remove_duplicate_faces(mesh, report);
   pair_half_edges(mesh, report);
   progress(0.6);
   orient(mesh, report);

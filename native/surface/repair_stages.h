@@ -34,6 +34,12 @@ struct RepairMesh {
   std::vector<int> components(int& count) const;
 };
 
+// Leaves one of the faces with the same corners, of the orientation that most of them have. If they balance, both sides of a sheet without
+// volume are there: a wall that bounds surface all around (two solids glued together) goes altogether, and so does a single pair of faces that
+// sticks out of a surface, since one of the two alone would leave boundaries where there were none. A sheet of such pairs with a free border,
+// as a leaf modelled from both sides, stays as one layer.
+void remove_duplicate_faces(RepairMesh& mesh, RepairReport& report);
+
 // Glues every edge of two faces, and at edges of more as many pairs as can be: pairs that close a fan, then those of one sheet, then of
 // matching orientation, then the flattest. Never makes a two-sided sheet one-sided. Counts non-manifold edges and vertices.
 void pair_half_edges(RepairMesh& mesh, RepairReport& report);
