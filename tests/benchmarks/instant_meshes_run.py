@@ -1,37 +1,53 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs Instant Meshes on one mesh of triangles: instant_meshes_run.py IN.npz OUT.npz VERTICES
 
-VERTICES is what the pure quad mesh is to have; the library's own target is a quarter of it, because it splits every face once."""
+VERTICES is what the pure quad mesh is to have; the library's own target is a quarter of it, because it splits every face once. It is
+driven through files: what its remesh() returns has been read back as triangles."""
 
 import sys
+import tempfile
 import time
+from pathlib import Path
 
 import numpy as np
 import pyinstantmeshes
 
 
+def write_obj(path, points, triangles):
+    with open(path, "w") as file:
+        np.savetxt(file, points, "v %.9g %.9g %.9g")
+        np.savetxt(file, triangles + 1, "f %d %d %d")
+
+
+def read_obj(path):
+    points, offsets, indices = [], [0], []
+    for line in path.read_text().splitlines():
+        words = line.split()
+        if words[:1] == ["v"]:
+            points.append([float(word) for word in words[1:4]])
+        elif words[:1] == ["f"]:
+            indices += [int(word.split("/")[0]) - 1 for word in words[1:]]
+            offsets.append(len(indices))
+    return np.array(points), np.array(offsets, np.int64), np.array(indices, np.int32)
+
+
 def main(source, target, vertices):
     data = np.load(source)
-    triangles = np.ascontiguousarray(data["indices"].reshape(-1, 3), np.int32)
-    start = time.perf_counter()
-    points, faces = pyinstantmeshes.remesh(
-        np.ascontiguousarray(data["points"], np.float32),
-        triangles,
-        target_vertex_count=max(1, round(vertices / 4)),
-        pure_quad=True,
-        align_to_boundaries=bool(int(data["has_boundary"])) if "has_boundary" in data else False,
-        deterministic=True,
-    )
-    seconds = time.perf_counter() - start
-    faces = np.asarray(faces)
-    np.savez(
-        target,
-        points=np.asarray(points, np.float64),
-        offsets=np.arange(len(faces) + 1, dtype=np.int64) * faces.shape[1],
-        indices=faces.astype(np.int32).ravel(),
-        seconds=seconds,
-        changed=True,
-    )
+    with tempfile.TemporaryDirectory() as folder:
+        original, remesh = Path(folder) / "in.obj", Path(folder) / "out.obj"
+        write_obj(original, data["points"], data["indices"].reshape(-1, 3))
+        start = time.perf_counter()
+        pyinstantmeshes.remesh_file(
+            str(original),
+            str(remesh),
+            target_vertex_count=max(1, round(vertices / 4)),
+            pure_quad=True,
+            align_to_boundaries=bool(data["has_boundary"]),
+            deterministic=True,
+        )
+        seconds = time.perf_counter() - start
+        points, offsets, indices = read_obj(remesh)
+    np.savez(target, points=points, offsets=offsets, indices=indices, seconds=seconds, changed=True)
 
 
 main(sys.argv[1], sys.argv[2], int(sys.argv[3]))

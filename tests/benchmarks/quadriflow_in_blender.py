@@ -29,7 +29,7 @@ def main(source, target, faces):
     bpy.context.scene.collection.objects.link(item)
     bpy.context.view_layer.objects.active = item
     item.select_set(True)
-    boundary = bool(int(data["has_boundary"])) if "has_boundary" in data else False
+    boundary = bool(data["has_boundary"])
     before = (len(mesh.vertices), len(mesh.polygons))
     start = time.perf_counter()
     status = bpy.ops.object.quadriflow_remesh(
