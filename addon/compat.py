@@ -6,7 +6,6 @@ import bpy
 HAS_COMMAND_LINE = bpy.app.version >= (4, 2, 0)
 _HAS_NODE_INTERFACE = bpy.app.version >= (4, 0, 0)
 _HAS_UV_VECTORS = bpy.app.version >= (3, 5, 0)
-_HAS_PROGRESS = bpy.app.version >= (4, 0, 0)
 
 
 def uv_values(layer):
@@ -40,18 +39,6 @@ def input_key(group, name):
     else:
         items = group.inputs
     return next(item.identifier for item in items if item.name == name)
-
-
-def draw_progress(layout, factor, text):
-    if _HAS_PROGRESS:
-        layout.progress(factor=factor, text=text)
-    else:
-        layout.label(text=f"{text} {factor:.0%}")
-
-
-def shade_smooth_by_default(mesh):
-    """Smooth shading of every face, as a sculptor expects of a scan."""
-    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
 
 
 def register_command_line(name, function):

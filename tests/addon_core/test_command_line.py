@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import csv
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+
+
+def rows(command_line, folder="out"):
+    with open(command_line.folder / folder / "summary.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def report(command_line, name, folder="out"):
+    return json.loads((command_line.folder / folder / f"{name}.report.json").read_text(encoding="utf-8"))
+
+
+def test_remesh_writes_hierarchy_report_and_summary(command_line):
+    run = command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--vertices", 100)
+    assert run.returncode == 0 and run.err == "" and "box.obj" in run.out
+    assert command_line.outputs() == ["box.hmesh", "box.report.json", "summary.csv"]
+    made = report(command_line, "box")
+    assert made["settings"]["vertices"] == 100 and made["version"] and made["peak_memory_bytes"] > 0 and made["input"]["file"] == "box.obj"
+    assert list(made["seconds"])[0] == "read" and list(made["seconds"])[-1] == "total"
+    assert [row["status"] for row in rows(command_line)] == ["done"]
+
+
+def test_exports(command_line):
+    run = command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--export", "ply,obj", "--export-repaired")
+    assert run.returncode == 0
+    assert command_line.outputs() == [
+        "box.hmesh", "box.obj", "box.ply", "box.repaired.obj", "box.repaired.ply", "box.report.json", "summary.csv",
+    ]  # fmt: skip
+
+
+def test_one_bad_input_leaves_the_others_done(command_line):
+    names = [command_line.box(name) for name in ("a.obj", "crash.obj", "hang.obj", "refuse.obj", "Größe 猫.obj")]
+    (command_line.folder / "empty.ply").write_bytes(b"")
+    (command_line.folder / "folder.ply").mkdir()
+    (command_line.folder / "notes.txt").write_text("x")
+    names += ["empty.ply", "missing.ply", "folder.ply", "notes.txt"]
+    run = command_line.run("remesh", *names, "--output", "out", "--timeout", 2, "--jobs", 3)
+    assert run.returncode == 1
+    lines = sorted(run.err.splitlines())
+    bad = ["crash.obj", "empty.ply", "folder.ply", "hang.obj", "missing.ply", "notes.txt", "refuse.obj"]
+    assert len(lines) == len(bad)
+    for line, name in zip(lines, bad):
+        assert line.startswith(f"hybrid-mesh: {name}: ") and line.count(name) == 1
+    assert [row["name"] for row in rows(command_line)] == [os.path.splitext(name)[0] for name in names]
+    assert [row["status"] for row in rows(command_line)] == ["done"] + 3 * ["failed"] + ["done"] + 4 * ["failed"]
+    assert "timed out" in report(command_line, "hang")["error"] and "SIGABRT" in report(command_line, "crash")["error"]
+    made = command_line.outputs()
+    assert "Größe 猫.hmesh" in made and "a.hmesh" in made
+    assert not [name for name in made if name.endswith(".hmesh") and name not in ("a.hmesh", "Größe 猫.hmesh")]
+    assert not [name for name in made if name.startswith(".")]
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        ((), "COMMAND"),
+        (("remesh",), "--output"),
+        (("remesh", "box.obj"), "--output"),
+        (("remesh", "--output", "out"), "INPUT"),
+        (("unknown",), "unknown"),
+        (("encode", "a", "b"), "later"),
+        (("decode", "a"), "later"),
+        (("bench",), "later"),
+        (("remesh", "box.obj", "--output", "out", "--plan", "p.json"), "later"),
+        (("remesh", "box.obj", "--output", "out", "--vertices", "0"), "--vertices"),
+        (("remesh", "box.obj", "--output", "out", "--vertices", "many"), "--vertices"),
+        (("remesh", "box.obj", "--output", "out", "--vertices", "1e99"), "--vertices"),
+        (("remesh", "box.obj", "--output", "out", "--levels", "-1"), "--levels"),
+        (("remesh", "box.obj", "--output", "out", "--levels", "99"), "--levels"),
+        (("remesh", "box.obj", "--output", "out", "--error", "0"), "--error"),
+        (("remesh", "box.obj", "--output", "out", "--error", "nan"), "--error"),
+        (("remesh", "box.obj", "--output", "out", "--faces", "hexagons"), "--faces"),
+        (("remesh", "box.obj", "--output", "out", "--base-quads", "few"), "--base-quads"),
+        (("remesh", "box.obj", "--output", "out", "--base-quads", "0"), "--base-quads"),
+        (("remesh", "box.obj", "--output", "out", "--export", "glb"), "--export"),
+        (("remesh", "box.obj", "--output", "out", "--jobs", "0"), "--jobs"),
+        (("remesh", "box.obj", "--output", "out", "--timeout", "-1"), "--timeout"),
+        (("remesh", "box.obj", "--output", "out", "--drop-components", "1"), "--drop-components"),
+        (("remesh", "box.obj", "--output", "out", "--vert", "5"), "--vert"),
+        (("remesh", "box.obj", "box.obj", "--output", "out"), "one name"),
+        (("remesh", "box.obj", "--output", ".", "--export", "obj"), "overwritten"),
+        (("remesh", "scene.blend", "--output", "out"), "Blender"),
+        (("remesh", "box.obj", "--output", "out", "--blend"), "Blender"),
+        (("compare", "box.obj"), "B"),
+        (("info",), "FILE"),
+    ],
+)
+def test_wrong_arguments_get_one_line_and_start_nothing(command_line, arguments, said):
+    command_line.box("box.obj")
+    run = command_line.run(*arguments)
+    assert run.returncode == 2 and run.out == ""
+    assert len(run.err.splitlines()) == 1 and said in run.err
+    assert command_line.outputs() is None and command_line.outputs(".") == ["box.obj"]
+
+
+def test_help_and_version(command_line):
+    assert "remesh" in command_line.run("--help").out
+    assert "--base-quads" in command_line.run("remesh", "--help").out
+    assert command_line.run("--version").returncode == 0
+
+
+def test_resume_does_only_what_is_not_done(command_line):
+    for name in ("a.obj", "b.obj"):
+        command_line.box(name)
+    command = ("remesh", "a.obj", "b.obj", "--output", "out", "--levels", "1", "--resume")
+    assert command_line.run(*command).returncode == 0
+    assert command_line.run(*command, "--threads", 1).out.count("skipped") == 2
+    (command_line.folder / "b.obj").write_text((command_line.folder / "b.obj").read_text().replace("v 0 0 0", "v 0 0 -1"))
+    again = command_line.run(*command)
+    assert "a.obj: done before" in again.out and "b.obj: done before" not in again.out
+    assert [row["status"] for row in rows(command_line)] == ["skipped", "done"] and rows(command_line)[0]["vertices"] == "26"
+    assert "skipped" not in command_line.run(*command, "--seed", 2).out
+    (command_line.folder / "out" / "a.hmesh").unlink()
+    assert "a.obj: done before" not in command_line.run(*command, "--seed", 2).out
+    assert "skipped" not in command_line.run(*command, "--seed", 2, "--export", "ply").out
+    (command_line.folder / "out" / "a.report.json").write_text("{")
+    assert "a.obj: done before" not in command_line.run(*command, "--seed", 2).out
+
+
+def test_a_failed_input_is_done_again(command_line):
+    command_line.box("refuse.obj")
+    for _ in range(2):
+        run = command_line.run("remesh", "refuse.obj", "--output", "out", "--resume")
+        assert run.returncode == 1 and "skipped" not in run.out
+
+
+def test_the_same_command_gives_the_same_bytes(command_line):
+    command_line.box("box.obj")
+    for folder, threads in (("one", 1), ("two", 2)):
+        assert command_line.run("remesh", "box.obj", "--output", folder, "--threads", threads, "--export", "ply").returncode == 0
+    for name in ("box.hmesh", "box.ply"):
+        assert (command_line.folder / "one" / name).read_bytes() == (command_line.folder / "two" / name).read_bytes()
+    one, two = report(command_line, "box", "one"), report(command_line, "box", "two")
+    assert {key for key in one if one[key] != two[key]} <= {"seconds", "peak_memory_bytes"}
+
+
+def test_an_output_folder_that_cannot_be_made(command_line):
+    command_line.box("box.obj")
+    run = command_line.run("remesh", "box.obj", "--output", "box.obj/out")
+    assert run.returncode == 1 and len(run.err.splitlines()) == 1 and "box.obj/out" in run.err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root writes anywhere")
+def test_an_output_folder_without_permission(command_line):
+    command_line.box("box.obj")
+    (command_line.folder / "out").mkdir(mode=0o500)
+    run = command_line.run("remesh", "box.obj", "--output", "out")
+    assert run.returncode == 1 and len(run.err.splitlines()) == 1 and "Permission" in run.err
+
+
+def test_a_file_that_cannot_be_completed_is_not_there(command_line):
+    command_line.box("box.obj")
+    # As on a disk that fills: the first bytes are written, then no more.
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))
+    run = command_line.run("remesh", "box.obj", "--output", "out", "--levels", 3, "--export", "ply", preexec_fn=limit)
+    assert run.returncode == 1 and len(run.err.splitlines()) == 1 and "box.obj" in run.err
+    assert [name for name in command_line.outputs() if name not in ("box.report.json", "summary.csv")] == []
+
+
+@pytest.mark.skipif(os.geteuid() != 0 or not shutil.which("mount"), reason="needs to mount a small disk")
+def test_a_disk_that_fills(command_line):
+    command_line.box("box.obj")
+    out = command_line.folder / "out"
+    out.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", str(out)], capture_output=True).returncode:
+        pytest.skip("mounting is not allowed here")
+    try:
+        run = command_line.run("remesh", "box.obj", "--output", "out", "--levels", 4, "--export", "ply")
+        assert run.returncode == 1 and "box.obj: No space left on device" in run.err
+        assert not [name for name in command_line.outputs() if name.endswith((".hmesh", ".ply")) or name.startswith(".")]
+    finally:
+        subprocess.run(["umount", str(out)], check=True)
+
+
+def children_of(pid):
+    found = []
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            try:
+                with open(f"/proc/{entry}/stat", encoding="ascii", errors="replace") as file:
+                    if int(file.read().rpartition(")")[2].split()[1]) == pid:
+                        found.append(int(entry))
+            except OSError:
+                pass
+    return found
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs /proc")
+@pytest.mark.parametrize("kill", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_the_run_and_its_children_end_within_a_second(command_line, kill):
+    for number in range(3):
+        command_line.box(f"hang{number}.obj")
+    process = command_line.start("remesh", *(f"hang{number}.obj" for number in range(3)), "--output", "out", "--jobs", 2)
+    deadline = time.monotonic() + 20
+    while len(children_of(process.pid)) < 2 and time.monotonic() < deadline:
+        time.sleep(0.05)
+    children = children_of(process.pid)
+    assert len(children) == 2
+    time.sleep(0.3)
+    began = time.monotonic()
+    process.send_signal(kill)
+    out, err = process.communicate(timeout=10)
+    while any(os.path.exists(f"/proc/{child}") and "Z" not in open(f"/proc/{child}/stat").read().split(")")[1][:3] for child in children):
+        assert time.monotonic() - began < 1
+        time.sleep(0.02)
+    assert time.monotonic() - began < 1
+    if kill != signal.SIGKILL:
+        assert process.returncode == 130 and err == "hybrid-mesh: interrupted\n" and out == ""
+        assert command_line.outputs() is None
+
+
+def test_compare_and_info(command_line):
+    command_line.box("box.obj")
+    compared = command_line.run("compare", "box.obj", "box.obj")
+    assert compared.returncode == 0 and json.loads(compared.out)["l2"] == 0
+    for arguments, name in ((("compare", "box.obj", "missing.obj"), "missing.obj"), (("info", "box.obj"), "box.obj"), (("info", "none.hmesh"), "none.hmesh")):
+        run = command_line.run(*arguments)
+        assert run.returncode == 1 and len(run.err.splitlines()) == 1 and run.err.startswith(f"hybrid-mesh: {name}: ") and run.out == ""
+    command_line.run("remesh", "box.obj", "--output", "out")
+    checked = command_line.run("info", "out/box.hmesh", "--check")
+    assert checked.returncode == 0 and json.loads(checked.out)["problems"] == []
+    (command_line.folder / "flat.hmesh").write_text('[[0, 0, 0], [1, 1, 0], 2, ""]')
+    flat = command_line.run("info", "flat.hmesh", "--check")
+    assert flat.returncode == 1 and flat.err == "hybrid-mesh: flat.hmesh: the box is empty\n"
+
+
+def test_a_reader_that_leaves_early_is_no_failure_to_speak_of(command_line):
+    command_line.box("box.obj")
+    process = command_line.start("compare", "box.obj", "box.obj")
+    process.stdout.close()
+    process.wait(20)
+    assert "Traceback" not in process.stderr.read()

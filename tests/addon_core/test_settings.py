@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import dataclasses
+
+import pytest
+from hybrid_mesh.core import settings
+from hybrid_mesh.core.settings import RemeshSettings, SettingsError
+
+
+def test_defaults_and_presets_are_valid():
+    RemeshSettings().validate()
+    for name in settings.PRESETS:
+        settings.preset(name).validate()
+
+
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        ("vertices", -1), ("vertices", 2**31), ("vertices", 1.5), ("vertices", True), ("error", -0.1), ("error", 1), ("error", float("nan")),
+        ("error", float("inf")), ("levels", -2), ("levels", 16), ("refinement", "both"), ("faces", "hexagons"), ("base", "most"), ("base", 0),
+        ("base", 1.5), ("stretch_threshold", 0.5), ("stretch_threshold", float("nan")), ("drop_components", 1), ("drop_components", -0.1),
+        ("seed", -1), ("seed", 2**64), ("threads", -1), ("threads", 5000),
+    ],
+)  # fmt: skip
+def test_what_is_out_of_bounds_is_named(name, value):
+    with pytest.raises(SettingsError) as raised:
+        settings.from_mapping({name: value})
+    assert settings.OPTION_NAMES[name] in str(raised.value)
+    assert repr(value) in str(raised.value)
+
+
+def test_every_setting_has_an_option_name():
+    assert set(settings.OPTION_NAMES) == {field.name for field in dataclasses.fields(RemeshSettings)}
+
+
+def test_unknown_settings_are_refused():
+    with pytest.raises(SettingsError, match="colour"):
+        settings.from_mapping({"colour": 1})
+    with pytest.raises(SettingsError, match="draft"):
+        settings.preset("none")
+
+
+def test_threads_change_neither_report_nor_hash():
+    assert RemeshSettings(threads=1).reported() == RemeshSettings(threads=2).reported()
+    assert RemeshSettings(seed=1).reported() != RemeshSettings(seed=2).reported()

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import time
+
+import numpy
+import pytest
+from hybrid_mesh import _native
+from hybrid_mesh.core.settings import RemeshSettings
+from hybrid_mesh.core.tasks import Task, TaskRun
+
+TRIANGLE = (numpy.eye(3), numpy.array([0, 3]), numpy.array([0, 1, 2], dtype=numpy.int32))
+
+
+def task(name, **settings):
+    return Task(name, lambda: _native.start_remesh(*TRIANGLE, RemeshSettings(**settings).native()), name.upper())
+
+
+def test_tasks_run_one_after_another_and_keep_their_notes():
+    run = TaskRun([task("a"), task("b")])
+    run.wait()
+    assert run.done and [(one.name, one.note) for one, _ in run.results] == [("a", "A"), ("b", "B")] and not run.errors
+    assert run.progress == 1
+
+
+def test_a_task_that_fails_leaves_the_others():
+    run = TaskRun([task("a", vertices=2), task("b")])
+    run.wait()
+    assert [one.name for one, _ in run.results] == ["b"]
+    assert run.errors[0][0].name == "a" and "fewer than" in run.errors[0][1]
+
+
+def test_a_task_that_does_not_start_is_an_error():
+    run = TaskRun([Task("a", lambda: 1 / 0)])
+    run.wait()
+    assert run.done and "ZeroDivisionError" in run.errors[0][1]
+
+
+def test_cancel_ends_soon_and_starts_nothing_more(monkeypatch):
+    monkeypatch.setenv("HYBRID_MESH_FAKE_SECONDS", "60")
+    run = TaskRun([task("a"), task("b")])
+    run.step()
+    assert not run.done and "a" in run.status and 0 <= run.progress < 0.5
+    began = time.monotonic()
+    run.cancel()
+    assert time.monotonic() - began < 0.5 and run.done and not run.results
+
+
+def test_an_interrupted_wait_cancels(monkeypatch):
+    monkeypatch.setenv("HYBRID_MESH_FAKE_SECONDS", "60")
+    run = TaskRun([task("a")])
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(_native.Job, "wait", lambda self, timeout_s=None: interrupt() if timeout_s else None)
+    with pytest.raises(KeyboardInterrupt):
+        run.wait()
+    assert run.done

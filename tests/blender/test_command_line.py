@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import bpy
+import pytest
+
+from conftest import PACKAGE, module
+
+
+@pytest.fixture
+def files(world, tmp_path):
+    """A mesh file and a .blend with a hidden object, one with modifiers, one that cannot be done."""
+    world.scan("first scan", location=(5, 0, 0), scale=(-1, 2, 1))
+    second = world.box("Größe 猫")
+    second.modifiers.new("Subdivision", "SUBSURF").levels = 3
+    second.hide_set(True)
+    second.hide_viewport = True
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("no faces", bpy.data.meshes.new("no faces")))
+    bpy.ops.object.camera_add()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    points, offsets, indices = world.evaluated(bpy.data.objects["first scan"])
+    world.native().write_mesh(str(tmp_path / "mesh.ply"), points, offsets, indices)
+    return tmp_path
+
+
+def run(*arguments):
+    return module("core.cli").run([str(argument) for argument in arguments])
+
+
+def summary(folder):
+    with open(folder / "summary.csv", encoding="utf-8", newline="") as file:
+        return {row["name"]: row for row in csv.DictReader(file)}
+
+
+def test_mesh_files(files, capfd):
+    assert run("remesh", files / "mesh.ply", "--output", files / "out", "--vertices", 1000, "--export", "ply,obj") == 0
+    assert sorted(os.listdir(files / "out")) == ["mesh.hmesh", "mesh.obj", "mesh.ply", "mesh.report.json", "summary.csv"]
+    assert run("compare", files / "mesh.ply", files / "out" / "mesh.ply") == 0
+    assert run("info", "--check", files / "out" / "mesh.hmesh") == 0
+    assert capfd.readouterr().err == ""
+
+
+def test_each_mesh_object_of_a_blend_is_an_input(files, capfd):
+    assert run("remesh", files / "scene.blend", files / "mesh.ply", "--output", files / "out", "--vertices", 1000, "--export", "ply") == 1
+    rows = summary(files / "out")
+    assert {name: row["status"] for name, row in rows.items()} == {"first scan": "done", "Größe 猫": "done", "no faces": "failed", "mesh": "done"}
+    error = capfd.readouterr().err
+    assert "no faces" in error and len(error.strip().splitlines()) == 1
+    native = module("_native")
+    # The object of the .blend, in world space, is the mesh that was exported in world space.
+    assert native.compare(*native.read_mesh(str(files / "mesh.ply")), *native.read_mesh(str(files / "out" / "first scan.ply")), 10000)["hausdorff"] < 0.02
+    points = native.read_mesh(str(files / "out" / "Größe 猫.ply"))[0]
+    assert abs(points).max() < 1  # the modifier was applied
+
+
+def test_one_name_twice_is_refused_before_anything_starts(files, capfd):
+    (files / "first scan.ply").write_bytes((files / "mesh.ply").read_bytes())
+    assert run("remesh", files / "scene.blend", files / "first scan.ply", "--output", files / "out") == 2
+    assert "first scan" in capfd.readouterr().err and not (files / "out").exists()
+
+
+def test_a_blend_with_the_levels(files, capfd):
+    assert run("remesh", files / "mesh.ply", "--output", files / "out", "--vertices", 1000, "--blend") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(files / "out" / "mesh.blend"))
+    collection = bpy.data.collections["mesh hierarchy"]
+    report = json.loads((files / "out" / "mesh.report.json").read_text())
+    assert module("features.levels.properties").report_of(collection)["final"] == report["final"]
+    preview = bpy.data.objects["mesh.preview"]
+    sizes = [level["quads"] for level in report["levels"]]
+    for number, size in enumerate(sizes):
+        module("bridge.levels").set_level(preview, number)
+        assert len(preview.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.polygons) == size
+
+
+@pytest.mark.parametrize("content", [b"", b"BLENDER", b"nothing of the kind"])
+def test_a_blend_that_is_none(files, capfd, content):
+    (files / "bad.blend").write_bytes(content)
+    assert run("remesh", files / "bad.blend", files / "mesh.ply", "--output", files / "out", "--vertices", 500) == 1
+    error = capfd.readouterr().err
+    assert len(error.strip().splitlines()) == 1 and "bad.blend" in error
+    assert summary(files / "out")["mesh"]["status"] == "done" and summary(files / "out")["bad"]["status"] == "failed"
+
+
+def blender(*arguments):
+    """The command line as design says it is reached from outside."""
+    if not bpy.app.binary_path:
+        expression = f"import sys, bpy; sys.path.insert(0, {os.path.dirname(os.path.dirname(module('').__file__))!r}); from hybrid_mesh.core import cli; cli.main({list(map(str, arguments))!r})"
+        command = [sys.executable, "-c", expression]
+    else:
+        command = [
+            bpy.app.binary_path, "--background", "--factory-startup", "--python-exit-code", "1", "--addons", PACKAGE,
+            "--python-expr", f"from {PACKAGE}.core import cli; cli.main()", "--", *map(str, arguments),
+        ]  # fmt: skip
+    return subprocess.run(command, capture_output=True, encoding="utf-8", timeout=300)
+
+
+def test_exit_codes_from_outside(files):
+    good = blender("remesh", files / "mesh.ply", "--output", files / "out", "--vertices", 500)
+    assert good.returncode == 0, good.stderr
+    assert (files / "out" / "mesh.hmesh").is_file()
+    bad = blender("remesh", files / "none.ply", "--output", files / "out", "--vertices", 500)
+    assert bad.returncode == 1 and "none.ply: No such file" in bad.stderr and "Traceback" not in bad.stderr + bad.stdout
+    wrong = blender("remesh", "--output", files / "out")
+    assert wrong.returncode == 2 and "INPUT" in wrong.stderr
+
+
+def test_the_registered_command(files):
+    assert module("registration")._run_command_line(["info", str(files / "none.hmesh")]) == 1
+    registered = module("registration")._command_line
+    assert len(registered) == 1 and (registered[0] is not None) == module("compat").HAS_COMMAND_LINE
