@@ -27,7 +27,8 @@ void work_forever(Context& context) {
 TEST(Job, SucceedsWithProgressOne) {
   int result = 0;
   Job job([&result](Context& context) {
-    Progress(context)(0.5);
+    const Progress progress(context);
+    progress(0.5);
     result = 42;
   });
   job.wait();
