@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surface/closest_point.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/error.h"
+#include "surface/scaled_points.h"
+
+namespace hybrid_mesh {
+
+namespace {
+
+struct Box {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  void add(const Vec3& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+  void add(const Box& b) { low = low.cwiseMin(b.low), high = high.cwiseMax(b.high); }
+  double squared_distance(const Vec3& p) const {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double d = std::max(std::max(low[i] - p[i], p[i] - high[i]), 0.0);
+      sum += d * d;
+    }
+    return sum;
+  }
+};
+
+struct Corners {
+  Vec3 a, b, c;
+};
+
+// Based on: Ericson, Real-Time Collision Detection, 2005, section 5.1.5. Triangles without area are taken as the segments or points they
+// are.
+double closest_on_triangle(const Vec3& p, const Corners& t, std::array<double, 3>& weights) {
+  const auto on_segment = [&](const Vec3& a, const Vec3& b) {
+    const Vec3 ab = b - a;
+    const double l = ab.squaredNorm();
+    return l > 0 ? std::clamp((p - a).dot(ab) / l, 0.0, 1.0) : 0.0;
+  };
+  const auto distance = [&] { return (p - (weights[0] * t.a + weights[1] * t.b + weights[2] * t.c)).squaredNorm(); };
+
+  const Vec3 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return weights = {1, 0, 0}, ap.squaredNorm();
+  const Vec3 bp = p - t.b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return weights = {0, 1, 0}, bp.squaredNorm();
+  const Vec3 cp = p - t.c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return weights = {0, 0, 1}, cp.squaredNorm();
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 - d3 > 0) {
+    const double s = d1 / (d1 - d3);
+    return weights = {1 - s, s, 0}, distance();
+  }
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 - d6 > 0) {
+    const double s = d2 / (d2 - d6);
+    return weights = {1 - s, 0, s}, distance();
+  }
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0) {
+    const double s = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return weights = {0, 1 - s, s}, distance();
+  }
+  const double sum = va + vb + vc;
+  if (va > 0 && vb > 0 && vc > 0 && std::isfinite(1 / sum)) {
+    weights = {va / sum, vb / sum, vc / sum};
+    return distance();
+  }
+  // No area, or so little that rounding decided above: the closest of the three sides.
+  const std::array<std::array<double, 3>, 3> sides = [&] {
+    const double s = on_segment(t.a, t.b), u = on_segment(t.b, t.c), v = on_segment(t.c, t.a);
+    return std::array<std::array<double, 3>, 3>{{{1 - s, s, 0}, {0, 1 - u, u}, {v, 0, 1 - v}}};
+  }();
+  double best = std::numeric_limits<double>::infinity();
+  std::array<double, 3> best_weights{1, 0, 0};
+  for (const auto& side : sides) {
+    weights = side;
+    if (const double d = distance(); d < best) best = d, best_weights = side;
+  }
+  weights = best_weights;
+  return best;
+}
+
+}  // namespace
+
+// A hierarchy of boxes over the triangles, halved at the median along the longest side. Coordinates are centred and scaled.
+class SurfaceDistanceQuery::Tree {
+ public:
+  Tree(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& faces) {
+    if (faces.empty()) throw Error(ErrorCode::InvalidInput, "a surface without faces has no closest points");
+    if (faces.size() > static_cast<std::size_t>(std::numeric_limits<int>::max() / 2))
+      throw Error(ErrorCode::Unsupported, "too many faces: " + std::to_string(faces.size()));
+    Box box;
+    for (const auto& face : faces)
+      for (const int v : face) box.add(points[v]);
+    // Halves, so that the sum cannot overflow.
+    centre_ = box.low / 2 + box.high / 2;
+    const double size = (box.high / 2 - box.low / 2).maxCoeff();
+    std::frexp(size, &exponent_);
+    const int count = static_cast<int>(faces.size());
+    corners_.resize(count);
+    order_.resize(count);
+    std::vector<Box> boxes(count);
+    std::vector<Corners> corners(count);
+    for (int f = 0; f < count; ++f) {
+      corners[f] = {local(points[faces[f][0]]), local(points[faces[f][1]]), local(points[faces[f][2]])};
+      for (const Vec3& p : {corners[f].a, corners[f].b, corners[f].c}) boxes[f].add(p);
+    }
+    std::iota(order_.begin(), order_.end(), 0);
+    nodes_.reserve(2 * (count / leaf_size + 1));
+    build(0, count, boxes);
+    slot_.resize(count);
+    for (int i = 0; i < count; ++i) {
+      corners_[i] = corners[order_[i]];
+      slot_[order_[i]] = i;
+    }
+  }
+
+  ClosestPoint closest(const Vec3& point, int guess) const {
+    const Vec3 p = local(point);
+    ClosestPoint best;
+    best.squared_distance = std::numeric_limits<double>::infinity();
+    if (guess >= 0 && guess < static_cast<int>(slot_.size())) test(slot_[guess], p, best);
+    struct Entry {
+      double distance;
+      int node;
+    };
+    Entry stack[64];  // as deep as the tree at most, which is balanced
+    int depth = 0;
+    stack[depth++] = {nodes_[0].box.squared_distance(p), 0};
+    while (depth > 0) {
+      const Entry entry = stack[--depth];
+      if (entry.distance > best.squared_distance) continue;  // equal ones may hold an earlier face
+      const Node& node = nodes_[entry.node];
+      if (node.second < 0) {
+        for (int i = node.begin; i < node.end; ++i) test(i, p, best);
+        continue;
+      }
+      Entry near{nodes_[entry.node + 1].box.squared_distance(p), entry.node + 1}, far{nodes_[node.second].box.squared_distance(p), node.second};
+      if (far.distance < near.distance) std::swap(near, far);
+      if (far.distance <= best.squared_distance) stack[depth++] = far;
+      if (near.distance <= best.squared_distance) stack[depth++] = near;
+    }
+    best.squared_distance = std::ldexp(best.squared_distance, 2 * exponent_);
+    return best;
+  }
+
+ private:
+  struct Node {
+    Box box;
+    int begin, end;   // of a leaf: its triangles
+    int second = -1;  // the second child; the first one follows its parent
+  };
+  static constexpr int leaf_size = 4;
+
+  Vec3 local(const Vec3& p) const { return scaled(Vec3(p / 2 - centre_ / 2), exponent_ - 1); }
+
+  int build(int begin, int end, const std::vector<Box>& boxes) {
+    const int index = static_cast<int>(nodes_.size());
+    nodes_.push_back({{}, begin, end});
+    Box box, centres;
+    for (int i = begin; i < end; ++i) {
+      box.add(boxes[order_[i]]);
+      centres.add(Vec3(boxes[order_[i]].low + boxes[order_[i]].high));
+    }
+    nodes_[index].box = box;
+    if (end - begin <= leaf_size) return index;
+    int axis = 0;
+    (centres.high - centres.low).maxCoeff(&axis);
+    const int middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int f, int g) {
+      const double a = boxes[f].low[axis] + boxes[f].high[axis], b = boxes[g].low[axis] + boxes[g].high[axis];
+      return a != b ? a < b : f < g;
+    });
+    build(begin, middle, boxes);
+    nodes_[index].second = build(middle, end, boxes);
+    return index;
+  }
+
+  void test(int slot, const Vec3& p, ClosestPoint& best) const {
+    std::array<double, 3> weights;
+    const double d = closest_on_triangle(p, corners_[slot], weights);
+    if (d > best.squared_distance || (d == best.squared_distance && order_[slot] >= best.face)) return;
+    best.squared_distance = d;
+    best.weights = weights;
+    best.face = order_[slot];
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<Corners> corners_;  // in the order of the leaves
+  std::vector<int> order_;        // the face of each
+  std::vector<int> slot_;         // the reverse
+  Vec3 centre_;
+  int exponent_ = 0;
+};
+
+SurfaceDistanceQuery::SurfaceDistanceQuery(const TriangleSurface& surface) : SurfaceDistanceQuery(surface.points, surface.faces) {}
+SurfaceDistanceQuery::SurfaceDistanceQuery(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& faces)
+    : tree_(std::make_unique<const Tree>(points, faces)) {}
+SurfaceDistanceQuery::~SurfaceDistanceQuery() = default;
+SurfaceDistanceQuery::SurfaceDistanceQuery(SurfaceDistanceQuery&&) noexcept = default;
+SurfaceDistanceQuery& SurfaceDistanceQuery::operator=(SurfaceDistanceQuery&&) noexcept = default;
+
+ClosestPoint SurfaceDistanceQuery::closest(const Vec3& p) const { return tree_->closest(p, -1); }
+ClosestPoint SurfaceDistanceQuery::closest(const Vec3& p, int guess) const { return tree_->closest(p, guess); }
+
+}  // namespace hybrid_mesh
