@@ -23,6 +23,9 @@ std::vector<std::uint8_t> encode_hierarchy(const HybridMesh& hierarchy, const st
 // the size given.
 LoadedHierarchy decode_hierarchy(const std::uint8_t* data, std::size_t size);
 
+// Of a section's payload.
+std::uint64_t container_checksum(const std::uint8_t* data, std::size_t size);
+
 // Written to a temporary file beside `path` that is renamed when complete. Throws Error{Io} and leaves nothing behind on failure.
 void save_hierarchy(const HybridMesh& hierarchy, const std::string& metadata_json, const std::string& path);
 

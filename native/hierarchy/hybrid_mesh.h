@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -286,7 +287,8 @@ class HybridMesh {
   std::string complete_sides(Repatch& repatch) const;
   std::string validate(const Repatch& repatch) const;
   std::vector<int> dependencies(const Repatch& repatch) const;
-  std::string insert(const Repatch& repatch, bool check_fans);
+  void append(Operation op);
+  void deactivate(int node);
   std::string find_fan_defect(int cap) const;
   // The faces of a level and the loops of their corners (leaf_polygons.h).
   struct Polygons;
@@ -304,6 +306,7 @@ class HybridMesh {
   std::vector<std::int32_t> holder_;  // per half-edge: 4 * node + side of the active node that has it, -1
   std::vector<FreeVertex> free_;
   std::vector<Operation> operations_;
+  std::map<HalfEdge, int> freed_by_;  // half-edges of removed quads -> operation
   std::vector<std::shared_ptr<const MapSlot>> maps_;
   std::vector<Positions> level_positions_;
   Positions final_positions_;

@@ -145,9 +145,9 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
     return n >= 0 && nodes_[n].level == level && is_removed(n);
   };
   for (const Operation& op : operations_) {
+    if (op.repatch.level <= level) continue;
     for (int n : op.repatch.removed)
       if (in_region(n)) return "an operation of level " + std::to_string(op.repatch.level) + " changes quads below the ones to be removed";
-    if (op.repatch.level <= level) continue;
     for (int root : op.roots)
       for (int s = 0; s < 4; ++s) {
         const SideLink other = neighbour(root, s);
@@ -176,32 +176,44 @@ std::vector<int> HybridMesh::dependencies(const Repatch& repatch) const {
       while (edges_[top].parent >= 0) top = edges_[top].parent;
       add_root(edges_[top].origin / 4);
       if (holder_[h] >= 0) continue;
-      // A half-edge that an operation freed.
-      for (; h >= 0; h = half_parent(h))
-        for (std::size_t o = 0; o < operations_.size(); ++o)
-          for (int n : operations_[o].repatch.removed)
-            for (HalfEdge held : nodes_[n].half)
-              if (held == h) result.insert(static_cast<int>(o));
+      for (; h >= 0; h = half_parent(h)) {
+        const auto freed = freed_by_.find(h);
+        if (freed != freed_by_.end()) result.insert(freed->second);
+      }
     }
   return {result.begin(), result.end()};
 }
 
-std::string HybridMesh::apply(const Repatch& repatch) { return insert(repatch, true); }
+void HybridMesh::deactivate(int top) {
+  std::vector<int> stack{top};
+  while (!stack.empty()) {
+    const int n = stack.back();
+    stack.pop_back();
+    Node& node = nodes_[n];
+    if (!node.active) continue;
+    node.active = false;
+    for (int s = 0; s < 4; ++s)
+      if (holder_[node.half[s]] == 4 * n + s) holder_[node.half[s]] = -1;
+    if (node.child >= 0)
+      for (int k = 0; k < 4; ++k) stack.push_back(node.child + k);
+  }
+}
 
-std::string HybridMesh::insert(const Repatch& given, bool check_fans) {
-  Operation op;
-  op.repatch = given;
-  std::string reason = complete_sides(op.repatch);
-  if (reason.empty()) reason = validate(op.repatch);
-  if (!reason.empty()) return reason;
+// Adds a valid operation; the counts of the leaves are left to the caller.
+void HybridMesh::append(Operation op) {
   const Repatch& repatch = op.repatch;
   op.depends = dependencies(repatch);
-  const std::size_t old_nodes = nodes_.size(), old_edges = edges_.size(), old_free = free_.size();
+  op.roots.clear();
+  op.enabled = true;
   const int index = operation_count(), level = repatch.level;
-
   op.first_vertex = static_cast<int>(free_.size());
   free_.resize(free_.size() + repatch.new_vertices);
   const auto corner_id = [&](int c) { return c >= 0 ? repatch.boundary[c] : VertexId(VertexId::Kind::Free, op.first_vertex - 1 - c); };
+  for (int n : repatch.removed) {
+    deactivate(n);
+    nodes_[n].operation = index;
+    for (HalfEdge h : nodes_[n].half) freed_by_[h] = index;
+  }
   for (std::size_t q = 0; q < repatch.quads.size(); ++q) {
     Node node;
     node.root = static_cast<int>(nodes_.size());
@@ -229,15 +241,29 @@ std::string HybridMesh::insert(const Repatch& given, bool check_fans) {
         if (side.kind == Side::Kind::Patch) nodes_[op.roots[side.quad]].half[side.side] = 2 * e + 1;
       }
     }
-  for (int n : repatch.removed) nodes_[n].operation = index;
+  for (int root : op.roots)
+    for (int s = 0; s < 4; ++s) holder_[nodes_[root].half[s]] = 4 * root + s;
   operations_.push_back(std::move(op));
-  activate();
-  if (!check_fans) return "";
+}
 
-  for (int cap = level, last = depth(); cap <= std::max(level, last) && reason.empty(); ++cap) reason = find_fan_defect(cap);
-  if (reason.empty() && roots().size() == static_cast<std::size_t>(base_count_) && leaves().empty()) reason = "nothing would be left";
-  if (reason.empty()) return "";
-  for (int n : operations_.back().repatch.removed) nodes_[n].operation = -1;
+std::string HybridMesh::apply(const Repatch& repatch) {
+  Operation op;
+  op.repatch = repatch;
+  std::string reason = complete_sides(op.repatch);
+  if (reason.empty()) reason = validate(op.repatch);
+  if (!reason.empty()) return reason;
+  const std::size_t old_nodes = nodes_.size(), old_edges = edges_.size(), old_free = free_.size();
+  append(std::move(op));
+  for (int cap = repatch.level, last = std::max(cap, depth()); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  if (reason.empty() && leaves().empty()) reason = "nothing would be left of the mesh";
+  if (reason.empty()) {
+    count_leaves();
+    return "";
+  }
+  for (int n : operations_.back().repatch.removed) {
+    nodes_[n].operation = -1;
+    for (HalfEdge h : nodes_[n].half) freed_by_.erase(h);
+  }
   operations_.pop_back();
   nodes_.resize(old_nodes);
   edges_.resize(old_edges);
