@@ -353,7 +353,8 @@ LoadedHierarchy decode_hierarchy(const std::uint8_t* data, std::size_t size) {
     const std::uint64_t length = file.u64(), checksum = file.u64();
     if (length > file.left()) corrupt("it ends too early");
     const std::uint8_t* payload = file.take(static_cast<std::size_t>(length));
-    if (container_checksum(payload, static_cast<std::size_t>(length)) != checksum) corrupt(std::string("section ") + tags[s] + " has a wrong checksum");
+    if (container_checksum(payload, static_cast<std::size_t>(length)) != checksum)
+      corrupt(std::string("section ") + tags[s] + " has a wrong checksum");
     Reader in(payload, static_cast<std::size_t>(length));
     switch (s) {
       case 0:

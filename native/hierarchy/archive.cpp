@@ -104,7 +104,8 @@ class HierarchyArchive {
           for (auto& sides : repatch.sides)
             for (auto& side : sides)
               if (side.kind == Repatch::Side::Kind::Outer) side.half = new_half[side.half];
-          for (int v = 0; v < repatch.new_vertices; ++v) new_free[old.operations_[order[o]].first_vertex + v] = static_cast<int>(mesh.free_.size()) + v;
+          for (int v = 0; v < repatch.new_vertices; ++v)
+            new_free[old.operations_[order[o]].first_vertex + v] = static_cast<int>(mesh.free_.size()) + v;
           return repatch;
         },
         made);
@@ -183,7 +184,8 @@ class HierarchyArchive {
       empty.set_closure(parts.closure);
       return empty;
     }
-    if (parts.base_vertices < 0 || static_cast<std::size_t>(parts.base_vertices) > 4 * parts.base_quads.size()) refuse("a number of base vertices out of range");
+    if (parts.base_vertices < 0 || static_cast<std::size_t>(parts.base_vertices) > 4 * parts.base_quads.size())
+      refuse("a number of base vertices out of range");
     HybridMesh mesh = HybridMesh::from_base(parts.base_vertices, parts.base_quads, parts.base_links);
     if (parts.enabled.size() != parts.operations.size()) refuse("operations and choices differ in number");
     for (std::size_t o = 1; o < parts.operations.size(); ++o)
@@ -192,7 +194,8 @@ class HierarchyArchive {
         mesh, static_cast<int>(parts.operations.size()),
         [&](int n) {
           if (static_cast<std::size_t>(n) >= parts.refined.size()) refuse("more quads than were announced");
-          return parts.refined[n] != 0 && (static_cast<std::size_t>(mesh.node_count()) + 4 <= parts.refined.size() ? true : (refuse("more quads than were announced"), false));
+          return parts.refined[n] != 0 &&
+                 (static_cast<std::size_t>(mesh.node_count()) + 4 <= parts.refined.size() ? true : (refuse("more quads than were announced"), false));
         },
         [&](int o) { return parts.operations[o].level; }, [&](int o) { return parts.operations[o]; }, [](int, int) {});
     if (static_cast<std::size_t>(mesh.node_count()) != parts.refined.size()) refuse("fewer quads than were announced");

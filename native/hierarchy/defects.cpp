@@ -112,8 +112,10 @@ class HierarchyAccess {
         if (r < 0 || r >= mesh_.node_count() || !mesh_.is_root(r) || mesh_.level(r) != op.repatch.level || mesh_.nodes_[r].operation != o)
           add(what + " has a root quad that is not its own");
       for (int d : op.depends) {
-        if (d < 0 || d >= o) add(what + " depends on one that is not earlier");
-        else if (op.enabled && !mesh_.operations_[d].enabled) add(what + " is enabled without one that it needs");
+        if (d < 0 || d >= o)
+          add(what + " depends on one that is not earlier");
+        else if (op.enabled && !mesh_.operations_[d].enabled)
+          add(what + " is enabled without one that it needs");
       }
     }
     for (int n = 0; n < mesh_.node_count(); ++n)
@@ -178,7 +180,8 @@ class HierarchyAccess {
     HybridMesh copy = mesh_;
     copy.count_leaves();
     const auto a = mesh_.leaf_counts(), b = copy.leaf_counts();
-    if (a.vertices != b.vertices || a.faces != b.faces || a.hanging != b.hanging || a.euler != b.euler) add("the counts of the leaves are not up to date");
+    if (a.vertices != b.vertices || a.faces != b.faces || a.hanging != b.hanging || a.euler != b.euler)
+      add("the counts of the leaves are not up to date");
   }
 
   void check_maps() {

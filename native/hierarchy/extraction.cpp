@@ -256,8 +256,6 @@ void HybridMesh::clear_positions() {
   final_positions_.clear();
 }
 
-bool HybridMesh::has_level_positions(int j) const {
-  return j >= 0 && j < static_cast<int>(level_positions_.size()) && !level_positions_[j].empty();
-}
+bool HybridMesh::has_level_positions(int j) const { return j >= 0 && j < static_cast<int>(level_positions_.size()) && !level_positions_[j].empty(); }
 
 }  // namespace hybrid_mesh

@@ -71,7 +71,8 @@ HybridMesh HybridMesh::from_base(int vertices, const std::vector<std::array<int,
       const int a = quads[q][s], b = quads[q][(s + 1) % 4];
       if (link.valid()) {
         if (link.node >= count || link.side < 0 || link.side > 3) refuse("a neighbour out of range at " + side_name(q, s));
-        if (link == SideLink{q, s} || neighbours[link.node][link.side] != SideLink{q, s}) refuse("a neighbour that is not mutual at " + side_name(q, s));
+        if (link == SideLink{q, s} || neighbours[link.node][link.side] != SideLink{q, s})
+          refuse("a neighbour that is not mutual at " + side_name(q, s));
         if (quads[link.node][link.side] != b || quads[link.node][(link.side + 1) % 4] != a)
           refuse("neighbours that do not share corners in opposite directions at " + side_name(q, s));
       }

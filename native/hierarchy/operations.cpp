@@ -71,7 +71,8 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
   for (const Operation& op : operations_)
     if (!op.enabled) return "an operation can be applied only with all earlier ones enabled";
   if (repatch.removed.empty() && repatch.quads.empty()) return "an operation that does nothing";
-  if (nodes_.size() + repatch.quads.size() > (1u << 28) || repatch.new_vertices < 0 || repatch.new_vertices > 4 * static_cast<int>(repatch.quads.size()))
+  if (nodes_.size() + repatch.quads.size() > (1u << 28) || repatch.new_vertices < 0 ||
+      repatch.new_vertices > 4 * static_cast<int>(repatch.quads.size()))
     return "a number of new vertices out of range";
 
   std::vector<int> removed = repatch.removed;
@@ -81,7 +82,8 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
   for (int n : removed) {
     if (n < 0 || n >= node_count()) return "a quad to be removed that does not exist";
     if (is_root(n)) return "a root quad cannot be removed";
-    if (nodes_[n].level != level) return "a quad to be removed that is of level " + std::to_string(nodes_[n].level) + ", not " + std::to_string(level);
+    if (nodes_[n].level != level)
+      return "a quad to be removed that is of level " + std::to_string(nodes_[n].level) + ", not " + std::to_string(level);
     if (removed_by(n) >= 0) return "a quad to be removed that another operation removes";
     if (!nodes_[n].active) return "a quad to be removed that is below a removed one";
   }
@@ -97,9 +99,13 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
     if (birth_level(v) > level) return "a boundary vertex of a finer level";
   }
   for (const auto& quad : repatch.quads)
-    for (int c : quad) {
+    for (int c : quad)
       if (c >= static_cast<int>(repatch.boundary.size()) || -1 - c >= repatch.new_vertices) return "a new quad with a corner out of range";
+  for (const auto& quad : repatch.quads)
+    for (int c : quad) {
       if (c < 0) vertex_used[-1 - c] = 1;
+      const auto name = [&](int k) { return k < 0 ? k : static_cast<int>(repatch.boundary[k].code); };
+      if (std::count_if(quad.begin(), quad.end(), [&](int k) { return name(k) == name(c); }) > 1) return "a new quad with the same corner twice";
     }
   if (std::find(vertex_used.begin(), vertex_used.end(), 0) != vertex_used.end()) return "a new vertex without a quad";
 
@@ -112,9 +118,11 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
       const Side& side = repatch.sides[q][s];
       const int a = repatch.quads[q][s], b = repatch.quads[q][(s + 1) % 4];
       if (side.kind == Side::Kind::Patch) {
-        if (side.quad < 0 || side.quad >= static_cast<int>(repatch.quads.size()) || side.side < 0 || side.side > 3) return side_name(q, s) + " has a neighbour out of range";
+        if (side.quad < 0 || side.quad >= static_cast<int>(repatch.quads.size()) || side.side < 0 || side.side > 3)
+          return side_name(q, s) + " has a neighbour out of range";
         const Side& back = repatch.sides[side.quad][side.side];
-        if (back.kind != Side::Kind::Patch || back.quad != static_cast<int>(q) || back.side != s || (side.quad == static_cast<int>(q) && side.side == s))
+        if (back.kind != Side::Kind::Patch || back.quad != static_cast<int>(q) || back.side != s ||
+            (side.quad == static_cast<int>(q) && side.side == s))
           return side_name(q, s) + " has a neighbour that is not mutual";
         if (repatch.quads[side.quad][side.side] != b || repatch.quads[side.quad][(side.side + 1) % 4] != a)
           return side_name(q, s) + " and its neighbour do not share corners in opposite directions";
@@ -122,7 +130,8 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
         const HalfEdge h = side.half;
         if (h < 0 || h >= static_cast<int>(holder_.size())) return side_name(q, s) + " takes a half-edge that does not exist";
         if (edges_[h >> 1].level != level) return side_name(q, s) + " takes an edge of another level";
-        if (a < 0 || b < 0 || repatch.boundary[a] != from(h) || repatch.boundary[b] != to(h)) return side_name(q, s) + " takes an edge between other vertices";
+        if (a < 0 || b < 0 || repatch.boundary[a] != from(h) || repatch.boundary[b] != to(h))
+          return side_name(q, s) + " takes an edge between other vertices";
         if (!taken.insert(h).second) return side_name(q, s) + " takes an edge twice";
         const bool freed = holder_[h] >= 0 && is_removed(holder_[h] / 4);
         if (!freed) {
@@ -246,6 +255,34 @@ void HybridMesh::append(Operation op) {
   operations_.push_back(std::move(op));
 }
 
+// Two edges between the same vertices would make a level that is no mesh by its vertices alone.
+std::string HybridMesh::find_double_edge(const Operation& op) const {
+  const int cap = op.repatch.level;
+  for (std::size_t q = 0; q < op.roots.size(); ++q)
+    for (int s = 0; s < 4; ++s) {
+      if (op.repatch.sides[q][s].kind == Side::Kind::Outer) continue;
+      const HalfEdge start = nodes_[op.roots[q]].half[s];
+      int same = 0;
+      HalfEdge h = start;
+      bool closed = false;
+      do {  // `start` has a quad to its left
+        same += to(h) == to(start);
+        const Sector sector = sector_left(h, cap);
+        if (sector.node < 0) break;
+        h = sector.next;
+        closed = h == start;
+      } while (!closed);
+      for (h = start; !closed;) {
+        const Sector sector = sector_right(h, cap);
+        if (sector.node < 0) break;
+        h = sector.next;
+        same += to(h) == to(start);
+      }
+      if (same > 1) return side_name(q, s) + " would be a second edge between the same vertices";
+    }
+  return "";
+}
+
 std::string HybridMesh::apply(const Repatch& repatch) {
   Operation op;
   op.repatch = repatch;
@@ -255,6 +292,7 @@ std::string HybridMesh::apply(const Repatch& repatch) {
   const std::size_t old_nodes = nodes_.size(), old_edges = edges_.size(), old_free = free_.size();
   append(std::move(op));
   for (int cap = repatch.level, last = std::max(cap, depth()); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  if (reason.empty()) reason = find_double_edge(operations_.back());
   if (reason.empty() && leaves().empty()) reason = "nothing would be left of the mesh";
   if (reason.empty()) {
     count_leaves();

@@ -170,7 +170,8 @@ LevelStretch level_stretch(const HybridMesh& hierarchy, const QuadMesh& mesh) {
       for (int k = 0; k < 4; ++k) {
         if (!above[child + k] || hierarchy.map(child + k)) continue;
         const bool is_right = k == 1 || k == 2, is_high = k >= 2;
-        stack.push_back({child + k, item.u + w * is_right, item.v + w * is_high, w, part_of(is_right ? right : left, 1, item.v + w, is_high ? 1 : -1)});
+        stack.push_back(
+            {child + k, item.u + w * is_right, item.v + w * is_high, w, part_of(is_right ? right : left, 1, item.v + w, is_high ? 1 : -1)});
       }
     }
   });

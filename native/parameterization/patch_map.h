@@ -12,11 +12,11 @@ namespace hybrid_mesh {
 // vertices carry where they lie. Corner 0 of the patch is (0, 0), then counter-clockwise (1, 0), (1, 1), (0, 1); side i runs from
 // corner i to corner i + 1. Sides are exact: their vertices have u or v equal to exactly 0 or 1, and appear in strictly monotone order.
 struct PatchMap {
-  std::vector<Vec2> uv;                         // #V
-  std::vector<Vec3> positions;                  // #V
-  std::vector<std::array<int, 3>> triangles;    // #T, counter-clockwise in uv
-  std::vector<int> source_face;                 // #T: face of the repaired surface that the triangle lies on
-  std::vector<std::array<float, 9>> source;     // #T: barycentrics of the three corners in that face, corner by corner
+  std::vector<Vec2> uv;                       // #V
+  std::vector<Vec3> positions;                // #V
+  std::vector<std::array<int, 3>> triangles;  // #T, counter-clockwise in uv
+  std::vector<int> source_face;               // #T: face of the repaired surface that the triangle lies on
+  std::vector<std::array<float, 9>> source;   // #T: barycentrics of the three corners in that face, corner by corner
 };
 
 // What a map gives at a point of the square.

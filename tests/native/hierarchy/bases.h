@@ -20,9 +20,7 @@ struct Base {
   bool simple;  // no two quads share two edges or are glued to themselves
 };
 
-inline HybridMesh cube() {
-  return HybridMesh::from_base(8, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
-}
+inline HybridMesh cube() { return HybridMesh::from_base(8, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}); }
 
 inline HybridMesh grid(int columns, int rows) {
   std::vector<std::array<int, 4>> quads;
@@ -48,8 +46,9 @@ inline HybridMesh torus(int columns, int rows) {
 
 // Two quads glued along all four sides.
 inline HybridMesh pillow() {
-  return HybridMesh::from_base(4, {{0, 1, 2, 3}, {0, 3, 2, 1}},
-                               {{SideLink{1, 3}, SideLink{1, 2}, SideLink{1, 1}, SideLink{1, 0}}, {SideLink{0, 3}, SideLink{0, 2}, SideLink{0, 1}, SideLink{0, 0}}});
+  return HybridMesh::from_base(
+      4, {{0, 1, 2, 3}, {0, 3, 2, 1}},
+      {{SideLink{1, 3}, SideLink{1, 2}, SideLink{1, 1}, SideLink{1, 0}}, {SideLink{0, 3}, SideLink{0, 2}, SideLink{0, 1}, SideLink{0, 0}}});
 }
 
 inline std::vector<Base> bases() {

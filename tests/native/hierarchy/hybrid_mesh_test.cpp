@@ -84,8 +84,8 @@ TEST(HybridMesh, BadBasesAreRefused) {
   EXPECT_TRUE(refused(4, {{0, 1, 2, 4}}));
   EXPECT_TRUE(refused(4, {{0, 1, 2, -1}}));
   EXPECT_TRUE(refused(5, {{0, 1, 2, 3}}));
-  EXPECT_TRUE(refused(6, {{0, 1, 2, 3}, {0, 1, 4, 5}}));        // along one edge in one direction
-  EXPECT_TRUE(refused(7, {{0, 1, 2, 3}, {0, 4, 5, 6}}));        // joined in a vertex alone
+  EXPECT_TRUE(refused(6, {{0, 1, 2, 3}, {0, 1, 4, 5}}));  // along one edge in one direction
+  EXPECT_TRUE(refused(7, {{0, 1, 2, 3}, {0, 4, 5, 6}}));  // joined in a vertex alone
   EXPECT_TRUE(refused(4, {{0, 1, 2, 3}, {0, 1, 2, 3}}));
   std::vector<std::array<SideLink, 4>> one_way(2);
   one_way[0][0] = {1, 2};

@@ -45,8 +45,7 @@ TEST(PatchMap, SamplesInterpolateTheTriangleThatHoldsThem) {
 TEST(PatchMap, VerticesAreFoundExactly) {
   const PatchMap map = make_map(9, 0.3, 3, bent);
   const PatchSampler sampler(map);
-  for (std::size_t i = 0; i < map.uv.size(); ++i)
-    EXPECT_NEAR((sampler(map.uv[i].x(), map.uv[i].y()).position - map.positions[i]).norm(), 0, 1e-14);
+  for (std::size_t i = 0; i < map.uv.size(); ++i) EXPECT_NEAR((sampler(map.uv[i].x(), map.uv[i].y()).position - map.positions[i]).norm(), 0, 1e-14);
 }
 
 TEST(PatchMap, CellAreasAddUpToTheSurface) {
