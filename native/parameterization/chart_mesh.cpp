@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "parameterization/chart_mesh.h"
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "base/error.h"
+
+namespace hybrid_mesh {
+namespace {
+
+double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - a.imag() * b.real(); }
+
+}  // namespace
+
+Transition Transition::inverse() const {
+  Transition t{static_cast<std::int8_t>((4 - turns) & 3), 0, 0};
+  const Complex c = t.rotate(Complex(-x, -y));
+  t.x = static_cast<std::int32_t>(c.real());
+  t.y = static_cast<std::int32_t>(c.imag());
+  return t;
+}
+
+Transition operator*(const Transition& a, const Transition& b) {
+  const Complex c = a(Complex(b.x, b.y));
+  return {static_cast<std::int8_t>((a.turns + b.turns) & 3), static_cast<std::int32_t>(c.real()), static_cast<std::int32_t>(c.imag())};
+}
+
+Transition across(int side, int other_side) {
+  static const std::array<Complex, 4> square{Complex(0, 0), Complex(1, 0), Complex(1, 1), Complex(0, 1)};
+  Transition t{static_cast<std::int8_t>((other_side + 2 - side + 4) & 3), 0, 0};
+  const Complex c = square[(other_side + 1) % 4] - t.rotate(square[side]);
+  t.x = static_cast<std::int32_t>(c.real());
+  t.y = static_cast<std::int32_t>(c.imag());
+  return t;
+}
+
+ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners) : mesh(surface.mesh), points(surface.mesh.points), chart(surface.patch) {
+  const TriangleSurface& fine = surface.mesh;
+  const int faces = static_cast<int>(fine.faces.size());
+  gluing.resize(3 * faces);
+  corner.resize(3 * faces);
+  uv.assign(points.size(), Complex(0, 0));
+  kind.assign(points.size(), Kind::Free);
+  double area = 0;
+  for (const auto& f : fine.faces) area += 0.5 * (points[f[1]] - points[f[0]]).cross(points[f[2]] - points[f[0]]).norm();
+  scale = std::sqrt(surface.patch_count() / area);
+
+  // Half-edges along the patches' sides.
+  std::vector<int> valence(surface.node_count, 0), vertex_of_node(surface.node_count, -1);
+  for (int q = 0; q < surface.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i) {
+      ++valence[surface.nodes[q][i]];
+      vertex_of_node[surface.nodes[q][i]] = surface.sides[q][i].front();
+      const PatchSide other = surface.neighbours[q][i];
+      if (other.patch < 0) continue;
+      const std::vector<int>& side = surface.sides[q][i];
+      for (std::size_t k = 1; k < side.size(); ++k) {
+        const int h = mesh.find(side[k - 1], side[k]);
+        if (h < 0 || surface.patch[h / 3] != q) throw Error(ErrorCode::Internal, "a patch's side is not made of the mesh's edges");
+        gluing[h] = across(i, other.side);
+      }
+    }
+  const auto given = [&](int h) { return Complex(corners[h / 3][h % 3].x(), corners[h / 3][h % 3].y()); };
+  for (int n = 0; n < surface.node_count; ++n) {
+    const int v = vertex_of_node[n];
+    if (v < 0) continue;
+    const bool boundary = mesh.is_boundary(v);
+    if (!boundary && valence[n] != 4) kind[v] = Kind::Cone;
+    if (boundary && valence[n] != 2) kind[v] = Kind::Pinned;
+  }
+  for (int v = 0; v < static_cast<int>(points.size()); ++v) {
+    if (!mesh.vertex_alive(v)) continue;
+    int h = mesh.out[v];
+    if (kind[v] == Kind::Cone) {
+      do {
+        const Complex z = given(h);
+        corner[h] = {0, static_cast<std::int32_t>(std::lround(z.real())), static_cast<std::int32_t>(std::lround(z.imag()))};
+        h = mesh.ccw(h);
+      } while (h != mesh.out[v]);
+      continue;
+    }
+    uv[v] = given(h);
+    corner[h] = Transition();
+    for (int g = mesh.ccw(h); g >= 0 && g != mesh.out[v]; g = mesh.ccw(h)) {
+      corner[g] = gluing[EditMesh::prev(h)] * corner[h];
+      h = g;
+    }
+    if (mesh.is_boundary(v) && kind[v] == Kind::Free) {
+      const Complex d = given(EditMesh::next(mesh.out[v])) - uv[v];
+      kind[v] = std::abs(d.real()) > std::abs(d.imag()) ? Kind::SlideU : Kind::SlideV;
+    }
+  }
+}
+
+FlatTriangle ChartMesh::flat(int f) const { return flatten(points[mesh.origin[3 * f]], points[mesh.origin[3 * f + 1]], points[mesh.origin[3 * f + 2]], scale); }
+
+double ChartMesh::determinant(int f) const {
+  const Complex a = at(3 * f), b = at(3 * f + 1), c = at(3 * f + 2);
+  return 0.5 * cross(b - a, c - a) / flat(f).area;
+}
+
+bool ChartMesh::can_collapse(int h) const {
+  const int v = mesh.from(h);
+  if (kind[v] == Kind::Cone || kind[v] == Kind::Pinned) return false;
+  return mesh.can_collapse(h);
+}
+
+void ChartMesh::collapse(int h) {
+  const int o = mesh.opposite[h];
+  const auto glue = [&](int kept, int lost) {  // of a dead face, as in EditMesh
+    const int x = mesh.opposite[kept], y = mesh.opposite[lost];
+    if (x < 0 || y < 0) return;
+    gluing[x] = gluing[lost] * gluing[x];
+    gluing[y] = gluing[x].inverse();
+  };
+  // u's transitions in the faces that it takes over, walking around v from the face that holds both.
+  Transition t = corner[EditMesh::next(h)];
+  int g = h;
+  for (;;) {
+    const int n = mesh.ccw(g);
+    if (n < 0 || n == h) break;
+    t = gluing[EditMesh::prev(g)] * t;
+    g = n;
+    if (o < 0 || g / 3 != o / 3) corner[g] = t;
+  }
+  glue(EditMesh::next(h), EditMesh::prev(h));
+  if (o >= 0) glue(EditMesh::prev(o), EditMesh::next(o));
+  mesh.collapse(h);
+}
+
+bool ChartMesh::undo_collapse(int h) {
+  const int o = mesh.opposite[h];
+  const int h1 = EditMesh::next(h), h2 = EditMesh::prev(h), x = mesh.opposite[h1], y = mesh.opposite[h2];
+  // The revived face shares the chart of its neighbour in v's star, or of its other neighbour where there is none.
+  chart[h / 3] = chart[(y >= 0 ? y : x) / 3];
+  if (y >= 0) {
+    corner[h1] = corner[y];
+    corner[h2] = corner[EditMesh::next(y)];
+    gluing[h1] = gluing[y];
+    gluing[h2] = gluing[y] = Transition();
+  } else {
+    corner[h1] = corner[EditMesh::next(x)];
+    corner[h2] = corner[x];
+    gluing[h1] = gluing[x] = Transition();
+  }
+  if (o >= 0) {
+    const int o1 = EditMesh::next(o), o2 = EditMesh::prev(o), x2 = mesh.opposite[o1];
+    // v is interior, or the collapse went along the boundary with no face here: x2 exists.
+    chart[o / 3] = chart[x2 / 3];
+    corner[o] = corner[EditMesh::next(x2)];
+    corner[o2] = corner[x2];
+    gluing[o2] = gluing[x2];
+    gluing[o1] = gluing[x2] = Transition();
+  }
+  mesh.undo_collapse(h);
+  const int v = mesh.from(h);
+  // v's frame is the chart of the revived face.
+  corner[h] = Transition();
+  Transition t;
+  int g = h;
+  for (;;) {
+    const int n = mesh.ccw(g);
+    if (n < 0 || n == h) break;
+    t = gluing[EditMesh::prev(g)] * t;
+    g = n;
+    corner[g] = t;
+  }
+  if (o >= 0) {
+    gluing[o] = corner[EditMesh::next(o)].inverse();  // from the second revived face to the first, whose chart is v's frame
+    gluing[h] = corner[EditMesh::next(o)];
+  }
+  return place(v);
+}
+
+double ChartMesh::angle_at(int v) const {
+  double sum = 0;
+  int h = mesh.out[v];
+  do {
+    const Complex p = at(h);
+    sum += std::arg((at(EditMesh::prev(h)) - p) * std::conj(at(EditMesh::next(h)) - p));
+    h = mesh.ccw(h);
+  } while (h >= 0 && h != mesh.out[v]);
+  return sum;
+}
+
+bool ChartMesh::place(int v) {
+  thread_local std::vector<Complex> from, to;
+  from.clear(), to.clear();
+  for_star(v, [&](int, const Complex& a, const Complex& b) {
+    from.push_back(a);
+    to.push_back(b);
+  });
+  const std::size_t n = from.size();
+  const bool boundary = mesh.is_boundary(v);
+  // Least doubled area of the star's triangles; not positive where they wind around v more than once, as they can beside a cone of many quads.
+  const auto depth = [&](const Complex& p) {
+    double least = 1e300, angle = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      least = std::min(least, cross(to[i] - from[i], p - from[i]));
+      angle += std::arg((to[i] - p) * std::conj(from[i] - p));
+    }
+    return angle < 9 ? least : -1.0;
+  };
+  if (boundary) {
+    // Between its neighbours on the boundary, which lie on one line of the grid.
+    const Complex a = from.front(), b = to.back(), d = b - a;
+    const bool along_u = std::abs(d.real()) > std::abs(d.imag());
+    kind[v] = along_u ? Kind::SlideU : Kind::SlideV;
+    for (const double t : {0.5, 0.7, 0.3, 0.85, 0.15, 0.95, 0.05, 0.99, 0.01, 0.999, 0.001}) {
+      uv[v] = along_u ? Complex(a.real() + t * d.real(), a.imag()) : Complex(a.real(), a.imag() + t * d.imag());
+      if (depth(uv[v]) > 0) return true;
+    }
+    return false;
+  }
+  kind[v] = Kind::Free;
+  Complex mean(0, 0);
+  for (const Complex& p : from) mean += p;
+  mean /= static_cast<double>(n);
+  Complex best = mean;
+  double most = depth(mean);
+  // Otherwise the deepest point of the kernel: the centre of its largest "cone", found by moving away from the tightest edge.
+  if (!(most > 0)) {
+    for (std::size_t start = 0; start < n; ++start) {
+      const Complex corner_at = from[start];
+      const Complex before = from[(start + n - 1) % n] - corner_at, after = to[start] - corner_at;
+      const double la = std::abs(before), lb = std::abs(after);
+      if (!(la > 0) || !(lb > 0)) continue;
+      double turn = std::arg(before / after);
+      if (turn < 0) turn += 2 * 3.14159265358979323846;
+      const Complex direction = after / lb * std::polar(1.0, 0.5 * turn);
+      for (double r = 0.5 * std::min(la, lb); r > 1e-4 * std::min(la, lb); r *= 0.5) {
+        const Complex p = corner_at + r * direction;
+        const double d = depth(p);
+        if (d > most) most = d, best = p;
+      }
+    }
+  }
+  uv[v] = best;
+  return most > 0;
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Based on: Rabinovich, Poranne, Panozzo, Sorkine-Hornung, Scalable locally injective mappings, 2017; Khodakovsky, Litke, Schroeder, Globally smooth
+// parameterizations with low distortion, 2003; Smith, Schaefer, Bijective parameterization with free boundaries, 2015 (the exact step limit).
+#include "parameterization/global_map.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_mesh {
+namespace {
+
+double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - a.imag() * b.real(); }
+
+class MapSmoothing {
+ public:
+  MapSmoothing(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options) : c_(charts), surface_(surface), options_(options) {
+    density_.theta = options.theta;
+  }
+
+  GlobalMapReport run(const Progress& progress) {
+    progress.check();
+    merge_insertions();
+    progress(0.1);
+    relax_bad_stars(0.02, 30, progress.part(0.1, 0.2));
+    report_.energy_before = mean_energy();
+    const int target = static_cast<int>(options_.vertices_a_quad * surface_.patch_count());
+    const std::vector<std::size_t> levels = collapse(target);
+    progress(0.3);
+    report_.coarse_vertices = c_.mesh.vertex_count;
+    newton(options_.newton_steps, progress.part(0.3, 0.6));
+    report_.energy_coarse = mean_energy();
+    refine(levels, progress.part(0.6, 1));
+    report_.energy = mean_energy();
+    return report_;
+  }
+
+ private:
+  static int next(int h) { return EditMesh::next(h); }
+  static int prev(int h) { return EditMesh::prev(h); }
+
+  double triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const {
+    const Complex a = t.alpha[0] * p0 + t.alpha[1] * p1 + t.alpha[2] * p2;
+    const Complex b = std::conj(t.alpha[0]) * p0 + std::conj(t.alpha[1]) * p1 + std::conj(t.alpha[2]) * p2;
+    return t.area * density_.value(std::norm(a), std::norm(b));
+  }
+  double mean_energy() const {
+    double sum = 0, area = 0;
+    for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f) {
+      if (!c_.mesh.alive[f]) continue;
+      const FlatTriangle t = c_.flat(f);
+      sum += triangle_energy(t, c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2));
+      area += t.area;
+    }
+    return sum / area;
+  }
+
+  // --- merging the points that cutting inserted --------------------------------------------------------------------------------
+  // A point inside an edge of the repaired surface goes to a neighbour on the same edge: the surface stays the same set of points.
+  bool merges_along_edge(int h) const {
+    const PointSource& p = surface_.source[c_.mesh.from(h)];
+    if (p.vertices[1] < 0 || p.vertices[2] >= 0) return false;
+    const PointSource& q = surface_.source[c_.mesh.to(h)];
+    if (q.vertices[2] >= 0) return false;
+    for (int i = 0; i < 2; ++i)
+      if (q.vertices[i] >= 0 && q.vertices[i] != p.vertices[0] && q.vertices[i] != p.vertices[1]) return false;
+    return true;
+  }
+
+  // Would the triangles of from(h)'s star stay counter-clockwise, with determinants and 3D shapes not below the bounds?
+  bool collapse_keeps_map(int h, double least_determinant, double least_shape) const {
+    const int v = c_.mesh.from(h), u = c_.mesh.to(h);
+    const Complex target = c_.corner[h].back(c_.at(next(h)));
+    bool good = true;
+    double fan = 0;  // the angle that the new triangles fill at u
+    c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
+      const int p = c_.mesh.to(g), q = c_.mesh.apex(g);
+      if (!good || p == u || q == u) return;
+      const Vec3 x = c_.points[p] - c_.points[u], y = c_.points[q] - c_.points[u];
+      const double area = x.cross(y).norm(), sum = x.squaredNorm() + y.squaredNorm() + (x - y).squaredNorm();
+      if (!(area > least_shape * sum)) {
+        good = false;
+        return;
+      }
+      const double signed_area = 0.5 * cross(b - a, target - a);
+      if (!(signed_area > least_determinant * 0.5 * area * c_.scale * c_.scale)) good = false;
+      fan += std::arg((b - target) * std::conj(a - target));
+    });
+    // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen.
+    return good && (c_.kind[u] != ChartMesh::Kind::Cone || fan < 3);
+  }
+
+  void merge_insertions() {
+    std::vector<int> inserted;
+    for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+      if (c_.mesh.vertex_alive(v) && surface_.source[v].vertices[1] >= 0 && surface_.source[v].vertices[2] < 0) inserted.push_back(v);
+    for (int pass = 0; pass < 6 && !inserted.empty(); ++pass) {
+      std::vector<int> left;
+      for (const int v : inserted) {
+        int best = -1;
+        double shortest = 1e300;
+        int h = c_.mesh.out[v];
+        do {
+          const double l = (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm();
+          if (merges_along_edge(h) && l < shortest && c_.can_collapse(h) && collapse_keeps_map(h, 0.01, 1e-6)) shortest = l, best = h;
+          if (c_.mesh.is_boundary(v)) break;
+          h = c_.mesh.ccw(h);
+        } while (h >= 0 && h != c_.mesh.out[v]);
+        if (best >= 0)
+          c_.collapse(best);
+        else
+          left.push_back(v);
+      }
+      if (left.size() == inserted.size()) break;
+      inserted = std::move(left);
+    }
+  }
+
+  // --- one vertex ----------------------------------------------------------------------------------------------------------------
+  struct Spoke {
+    Complex a, b;
+    FlatTriangle t;  // corners: the vertex, a, b
+  };
+  void gather(int v) {
+    star_.clear();
+    c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
+      star_.push_back({a, b, flatten(c_.points[v], c_.points[c_.mesh.to(g)], c_.points[c_.mesh.apex(g)], c_.scale)});
+    });
+  }
+  double star_energy(const Complex& p) const {
+    double sum = 0;
+    for (const Spoke& s : star_) {
+      if (!(cross(s.a - p, s.b - p) > 0)) return 1e300;
+      sum += triangle_energy(s.t, p, s.a, s.b);
+    }
+    return sum;
+  }
+  // One Newton step on v's position; returns the energy gained, relative to the star's energy.
+  double relax(int v, bool stretch_steps) {
+    gather(v);
+    Complex p = c_.uv[v];
+    double energy = 0;
+    Eigen::Vector2d gradient(0, 0);
+    Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
+    for (const Spoke& s : star_) {
+      const Complex &x = s.t.alpha[0], &y = s.t.alpha[1], &z = s.t.alpha[2];
+      const Complex a = x * p + y * s.a + z * s.b, b = std::conj(x) * p + std::conj(y) * s.a + std::conj(z) * s.b;
+      const Distortion::Derivatives e = density_(std::norm(a), std::norm(b));
+      energy += s.t.area * e.value;
+      const Complex g = 2 * e.s * a * std::conj(x) + 2 * e.t * b * x;
+      gradient += s.t.area * Eigen::Vector2d(g.real(), g.imag());
+      Eigen::Matrix<double, 4, 2> j;
+      j << x.real(), -x.imag(), x.imag(), x.real(), x.real(), x.imag(), -x.imag(), x.real();
+      hessian += s.t.area * (j.transpose() * projected_hessian(e, a, b) * j);
+    }
+    Eigen::Vector2d step(0, 0);
+    if (c_.kind[v] == ChartMesh::Kind::SlideU) {
+      step.x() = -gradient.x() / std::max(hessian(0, 0), 1e-300);
+    } else if (c_.kind[v] == ChartMesh::Kind::SlideV) {
+      step.y() = -gradient.y() / std::max(hessian(1, 1), 1e-300);
+    } else {
+      const double determinant = hessian.determinant(), trace = hessian.trace();
+      if (!(determinant > 1e-12 * trace * trace)) hessian += 1e-6 * trace * Eigen::Matrix2d::Identity();
+      step = -hessian.inverse() * gradient;
+    }
+    if (!step.allFinite()) return 0;
+    Complex d(step.x(), step.y());
+    double t = 1;
+    for (int tries = 0; tries < 10; ++tries, t *= 0.5) {
+      const double fresh = star_energy(p + t * d);
+      if (fresh < energy) {
+        Complex best = p + t * d;
+        double least = fresh;
+        while (stretch_steps && t < 64) {
+          t *= 2;
+          const double further = star_energy(p + t * d);
+          if (!(further < least)) break;
+          least = further;
+          best = p + t * d;
+        }
+        c_.uv[v] = best;
+        return (energy - least) / energy;
+      }
+    }
+    return 0;
+  }
+
+  // Badly squeezed triangles first: a global line search would stall on them.
+  void relax_bad_stars(double least, int sweeps, const Progress& progress) {
+    std::vector<int> around;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      std::vector<char> chosen(c_.points.size(), 0);
+      bool any = false;
+      for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f)
+        if (c_.mesh.alive[f] && c_.determinant(f) < least) {
+          any = true;
+          for (int i = 0; i < 3; ++i) chosen[c_.mesh.origin[3 * f + i]] = 1;
+        }
+      if (!any) break;
+      for (int ring = 0; ring < 3; ++ring) {
+        std::vector<char> grown = chosen;
+        for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f) {
+          if (!c_.mesh.alive[f]) continue;
+          const int* v = &c_.mesh.origin[3 * f];
+          if (chosen[v[0]] || chosen[v[1]] || chosen[v[2]]) grown[v[0]] = grown[v[1]] = grown[v[2]] = 1;
+        }
+        chosen.swap(grown);
+      }
+      for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+        if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) relax(v, true);
+      progress((sweep + 1.0) / sweeps);
+    }
+  }
+
+  // --- the collapse hierarchy ------------------------------------------------------------------------------------------------------
+  // Collapses down to `target` vertices in passes over independent stars; returns the length of the log after each pass.
+  std::vector<std::size_t> collapse(int target) {
+    std::vector<std::size_t> levels;
+    struct Candidate {
+      double cost;
+      int vertex;
+    };
+    std::vector<Candidate> order;
+    std::vector<char> locked(c_.points.size(), 0);
+    std::vector<int> ring;
+    while (c_.mesh.vertex_count > target) {
+      order.clear();
+      for (int v = 0; v < static_cast<int>(c_.points.size()); ++v) {
+        locked[v] = 0;
+        if (!c_.mesh.vertex_alive(v) || !c_.movable(v)) continue;
+        double shortest = 1e300;
+        int h = c_.mesh.out[v];
+        do {
+          shortest = std::min(shortest, (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm());
+          h = c_.mesh.ccw(h);
+        } while (h >= 0 && h != c_.mesh.out[v]);
+        order.push_back({shortest, v});
+      }
+      std::sort(order.begin(), order.end(), [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.vertex < b.vertex; });
+      // Only the shorter half: a pass over independent stars must not reach for long edges while short ones are locked.
+      order.resize((order.size() + 1) / 2);
+      const std::size_t before = log_.size();
+      for (const Candidate& candidate : order) {
+        const int v = candidate.vertex;
+        if (locked[v]) continue;
+        std::vector<std::pair<double, int>> halves;
+        int h = c_.mesh.out[v];
+        do {
+          halves.push_back({(c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm(), h});
+          if (c_.mesh.is_boundary(v)) break;
+          h = c_.mesh.ccw(h);
+        } while (h >= 0 && h != c_.mesh.out[v]);
+        std::sort(halves.begin(), halves.end());
+        for (std::size_t i = 0; i < std::min<std::size_t>(3, halves.size()); ++i) {
+          const int half = halves[i].second;
+          if (!c_.can_collapse(half) || !collapse_keeps_map(half, 0.05, 0.03)) continue;
+          c_.mesh.ring(v, ring);
+          for (const int w : ring) locked[w] = 1;
+          c_.collapse(half);
+          log_.push_back(half);
+          break;
+        }
+        if (c_.mesh.vertex_count <= target) break;
+      }
+      if (log_.size() - before < 0.005 * c_.mesh.vertex_count + 1) {
+        if (log_.size() > before) levels.push_back(log_.size());
+        break;
+      }
+      levels.push_back(log_.size());
+    }
+    return levels;
+  }
+
+  void sweep(int count, const std::vector<int>& vertices, const Progress& progress) {
+    for (int i = 0; i < count; ++i) {
+      progress.check();
+      if (i % 2 == 0)
+        for (const int v : vertices) relax(v, false);
+      else
+        for (std::size_t k = vertices.size(); k-- > 0;) relax(vertices[k], false);
+    }
+  }
+
+  std::vector<int> movable_vertices() const {
+    std::vector<int> vertices;
+    for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+      if (c_.mesh.vertex_alive(v) && c_.movable(v)) vertices.push_back(v);
+    return vertices;
+  }
+
+  void refine(const std::vector<std::size_t>& levels, const Progress& progress) {
+    std::vector<int> fresh;
+    int swept = c_.mesh.vertex_count;
+    for (std::size_t level = levels.size(); level-- > 0;) {
+      const std::size_t begin = level > 0 ? levels[level - 1] : 0;
+      fresh.clear();
+      while (log_.size() > begin) {
+        const int h = log_.back();
+        log_.pop_back();
+        const int v = c_.mesh.from(h);
+        if (!c_.undo_collapse(h)) {
+          ++report_.unplaced;
+          untangle(v);
+        }
+        fresh.push_back(v);
+      }
+      for (const int v : fresh) relax(v, false);
+      // A full sweep whenever the mesh has grown by half, and at the end.
+      if (c_.mesh.vertex_count > 1.5 * swept || level == 0) {
+        sweep(options_.sweeps, movable_vertices(), progress);
+        swept = c_.mesh.vertex_count;
+      }
+      progress(1 - static_cast<double>(level) / levels.size());
+    }
+  }
+
+  // The star of v has no kernel: its neighbours are moved until it has one.
+  void untangle(int v) {
+    std::vector<int> region{v}, ring;
+    for (int grow = 0; grow < 2; ++grow) {
+      const std::vector<int> seed = region;
+      for (const int w : seed) {
+        c_.mesh.ring(w, ring);
+        for (const int x : ring)
+          if (std::find(region.begin(), region.end(), x) == region.end()) region.push_back(x);
+      }
+    }
+    for (double eps = 1e-1; eps > 1e-7; eps *= 0.3) {
+      for (int i = 0; i < 4; ++i)
+        for (const int w : region)
+          if (c_.movable(w)) relax_regularized(w, eps);
+      bool good = c_.angle_at(v) < 9;
+      for (const int w : region) {
+        int h = c_.mesh.out[w];
+        do {
+          if (!(c_.determinant(h / 3) > 0)) good = false;
+          h = c_.mesh.ccw(h);
+        } while (good && h >= 0 && h != c_.mesh.out[w]);
+      }
+      if (good) return;
+    }
+    throw Error(ErrorCode::Internal, "the map could not be carried to a finer mesh");
+  }
+
+  // The energy with D replaced by (D + sqrt(eps^2 + D^2)) / 2, finite for folded triangles; minimised by pattern search.
+  double regularized_energy(const Complex& p, double eps) const {
+    double sum = 0;
+    for (const Spoke& s : star_) {
+      const Complex a = s.t.alpha[0] * p + s.t.alpha[1] * s.a + s.t.alpha[2] * s.b;
+      const Complex b = std::conj(s.t.alpha[0]) * p + std::conj(s.t.alpha[1]) * s.a + std::conj(s.t.alpha[2]) * s.b;
+      const double d = std::norm(a) - std::norm(b), chi = 0.5 * (d + std::sqrt(eps * eps + d * d));
+      sum += s.t.area * ((std::norm(a) + std::norm(b)) / chi);
+    }
+    return sum;
+  }
+  void relax_regularized(int v, double eps) {
+    gather(v);
+    double size = 0;
+    for (const Spoke& s : star_) size = std::max(size, std::abs(s.a - c_.uv[v]));
+    Complex p = c_.uv[v];
+    double energy = regularized_energy(p, eps);
+    const bool slide_u = c_.kind[v] == ChartMesh::Kind::SlideU, slide_v = c_.kind[v] == ChartMesh::Kind::SlideV;
+    for (double r = 0.5 * size; r > 1e-3 * size; r *= 0.5)
+      for (int k = 0; k < 8; ++k) {
+        if ((slide_u && k % 4 != 0) || (slide_v && k % 4 != 2)) continue;
+        static const std::array<Complex, 8> ways{Complex(1, 0), Complex(.7, .7), Complex(0, 1), Complex(-.7, .7), Complex(-1, 0), Complex(-.7, -.7), Complex(0, -1), Complex(.7, -.7)};
+        const Complex q = p + r * ways[k];
+        const double e = regularized_energy(q, eps);
+        if (e < energy) energy = e, p = q;
+      }
+    c_.uv[v] = p;
+  }
+
+  // --- the coarse mesh -----------------------------------------------------------------------------------------------------------
+  void newton(int steps, const Progress& progress) {
+    const std::vector<int> vertices = movable_vertices();
+    std::vector<int> unknown(2 * c_.points.size(), -1);
+    int n = 0;
+    for (const int v : vertices) {
+      if (c_.kind[v] != ChartMesh::Kind::SlideV) unknown[2 * v] = n++;
+      if (c_.kind[v] != ChartMesh::Kind::SlideU) unknown[2 * v + 1] = n++;
+    }
+    if (n == 0) return;
+    std::vector<int> faces;
+    std::vector<FlatTriangle> flat;
+    for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f)
+      if (c_.mesh.alive[f]) {
+        faces.push_back(f);
+        flat.push_back(c_.flat(f));
+      }
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> solver;
+    bool analyzed = false;
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto energy_now = [&] {
+      double sum = 0;
+      for (std::size_t i = 0; i < faces.size(); ++i) sum += triangle_energy(flat[i], c_.at(3 * faces[i]), c_.at(3 * faces[i] + 1), c_.at(3 * faces[i] + 2));
+      return sum;
+    };
+    for (int step = 0; step < steps; ++step) {
+      progress(static_cast<double>(step) / steps);
+      entries.clear();
+      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+      double energy = 0;
+      for (std::size_t i = 0; i < faces.size(); ++i) {
+        const int f = faces[i];
+        const FlatTriangle& t = flat[i];
+        Complex a(0, 0), b(0, 0);
+        Eigen::Matrix<double, 4, 6> j;
+        std::array<int, 6> at;
+        for (int k = 0; k < 3; ++k) {
+          const int h = 3 * f + k, v = c_.mesh.origin[h];
+          const Complex z = c_.at(h), x = c_.corner[h].rotate(t.alpha[k]), y = c_.corner[h].rotate(std::conj(t.alpha[k]));
+          a += t.alpha[k] * z;
+          b += std::conj(t.alpha[k]) * z;
+          j.block<4, 2>(0, 2 * k) << x.real(), -x.imag(), x.imag(), x.real(), y.real(), -y.imag(), y.imag(), y.real();
+          at[2 * k] = unknown[2 * v];
+          at[2 * k + 1] = unknown[2 * v + 1];
+        }
+        const Distortion::Derivatives e = density_(std::norm(a), std::norm(b));
+        energy += t.area * e.value;
+        Eigen::Vector4d g4;
+        g4 << 2 * e.s * a.real(), 2 * e.s * a.imag(), 2 * e.t * b.real(), 2 * e.t * b.imag();
+        const Eigen::Matrix<double, 6, 1> g = t.area * (j.transpose() * g4);
+        const Eigen::Matrix<double, 6, 6> hessian = t.area * (j.transpose() * projected_hessian(e, a, b) * j);
+        for (int p = 0; p < 6; ++p) {
+          if (at[p] < 0) continue;
+          gradient[at[p]] += g[p];
+          for (int q = 0; q < 6; ++q)
+            if (at[q] >= 0 && at[q] <= at[p]) entries.push_back({at[p], at[q], hessian(p, q) + (p == q ? 1e-10 * t.area : 0.0)});
+        }
+      }
+      Eigen::SparseMatrix<double> matrix(n, n);
+      matrix.setFromTriplets(entries.begin(), entries.end());
+      if (!analyzed) solver.analyzePattern(matrix);
+      analyzed = true;
+      double damping = 0;
+      for (int tries = 0; tries < 5; ++tries) {
+        solver.factorize(matrix);
+        if (solver.info() == Eigen::Success) break;
+        damping = damping == 0 ? 1e-6 : 100 * damping;
+        for (int i = 0; i < n; ++i) matrix.coeffRef(i, i) *= 1 + damping;
+      }
+      if (solver.info() != Eigen::Success) return;
+      const Eigen::VectorXd direction = -solver.solve(gradient);
+      const double slope = direction.dot(gradient);
+      if (!(slope < 0)) return;
+      const auto direction_at = [&](int h) {
+        const int v = c_.mesh.origin[h];
+        const int x = unknown[2 * v], y = unknown[2 * v + 1];
+        return c_.corner[h].rotate(Complex(x >= 0 ? direction[x] : 0.0, y >= 0 ? direction[y] : 0.0));
+      };
+      // The largest step before a triangle's area, a quadratic in the step, vanishes.
+      double limit = 1e300;
+      for (const int f : faces) {
+        const Complex p = c_.at(3 * f), e1 = c_.at(3 * f + 1) - p, e2 = c_.at(3 * f + 2) - p;
+        const Complex d = direction_at(3 * f), d1 = direction_at(3 * f + 1) - d, d2 = direction_at(3 * f + 2) - d;
+        const double c0 = cross(e1, e2), c1 = cross(e1, d2) + cross(d1, e2), c2 = cross(d1, d2);
+        const double discriminant = c1 * c1 - 4 * c2 * c0;
+        if (discriminant < 0) continue;
+        const double root = std::sqrt(discriminant);
+        // The smallest positive root, without cancellation.
+        const double q = -0.5 * (c1 + (c1 < 0 ? -root : root));
+        for (const double r : {c2 != 0 ? q / c2 : -1.0, q != 0 ? c0 / q : -1.0})
+          if (r > 0 && r < limit) limit = r;
+      }
+      double t = std::min(1.0, 0.9 * limit);
+      const std::vector<Complex> start = c_.uv;
+      bool accepted = false;
+      double fresh = energy;
+      for (int tries = 0; tries < 25; ++tries, t *= 0.5) {
+        for (const int v : vertices) {
+          const int x = unknown[2 * v], y = unknown[2 * v + 1];
+          c_.uv[v] = start[v] + t * Complex(x >= 0 ? direction[x] : 0.0, y >= 0 ? direction[y] : 0.0);
+        }
+        fresh = energy_now();
+        if (fresh <= energy + 1e-4 * t * slope && std::isfinite(fresh)) {
+          bool unfolded = true;
+          for (const int f : faces) {
+            const Complex p = c_.at(3 * f);
+            if (!(cross(c_.at(3 * f + 1) - p, c_.at(3 * f + 2) - p) > 0)) unfolded = false;
+          }
+          if (unfolded) {
+            accepted = true;
+            break;
+          }
+        }
+      }
+      if (!accepted) {
+        c_.uv = start;
+        return;
+      }
+      report_.newton_steps = step + 1;
+      if (energy - fresh < 1e-5 * energy) return;
+    }
+  }
+
+  ChartMesh& c_;
+  const PatchedSurface& surface_;
+  const GlobalMapOptions& options_;
+  Distortion density_;
+  GlobalMapReport report_;
+  std::vector<int> log_;
+  std::vector<Spoke> star_;
+};
+
+}  // namespace
+
+GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress) {
+  return MapSmoothing(charts, surface, options).run(progress);
+}
+
+}  // namespace hybrid_mesh

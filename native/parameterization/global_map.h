@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/context.h"
+#include "parameterization/chart_mesh.h"
+
+namespace hybrid_mesh {
+
+struct GlobalMapOptions {
+  double theta = 0.3;             // see Distortion: small for right angles, large for even size
+  double vertices_a_quad = 30;    // of the coarse mesh on which the map is found
+  int newton_steps = 15;
+  int sweeps = 3;                 // of vertex-wise relaxation a level, on the way back to the fine mesh
+};
+
+struct GlobalMapReport {
+  int coarse_vertices = 0, newton_steps = 0, unplaced = 0, cone_moves = 0;
+  double energy_before = 0, energy_coarse = 0, energy = 0;  // means over the area; 1 is an isometry
+};
+
+// Makes the map smooth across patches, even and right-angled: descends a barrier energy over all patches at once on a collapsed copy, and carries the result back to
+// the fine mesh level by level. Bijectivity holds throughout: no step may fold a triangle. Points of `surface` that were inserted by cutting are merged
+// away where the map allows (the surface stays the same set of points). Patch sides move with the map: afterwards `surface` is of no use.
+GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
+
+}  // namespace hybrid_mesh

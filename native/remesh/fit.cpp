@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/fit.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_mesh {
+namespace {
+
+// The mesh split into triangles, quads along the diagonal that leaves the flatter pair.
+struct TriangleCover {
+  TriangleSurface triangles;
+  std::vector<int> first;  // per face: its first triangle
+
+  explicit TriangleCover(const QuadMesh& mesh) {
+    const std::vector<Vec3>& p = mesh.points;
+    const auto flatness = [&](int a, int b, int c, int d) {
+      const Vec3 n1 = (p[b] - p[a]).cross(p[c] - p[a]), n2 = (p[c] - p[a]).cross(p[d] - p[a]);
+      const double l = std::sqrt(n1.squaredNorm() * n2.squaredNorm());
+      return l > 0 ? n1.dot(n2) / l : -1.0;
+    };
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      first.push_back(static_cast<int>(triangles.faces.size()));
+      const std::int32_t* v = &mesh.indices[mesh.offsets[f]];
+      const int n = static_cast<int>(mesh.offsets[f + 1] - mesh.offsets[f]);
+      const int start = n == 4 && flatness(v[1], v[2], v[3], v[0]) > flatness(v[0], v[1], v[2], v[3]) ? 1 : 0;
+      for (int i = 1; i + 1 < n; ++i) triangles.faces.push_back({v[start], v[(start + i) % n], v[(start + i + 1) % n]});
+    }
+    triangles.points.resize(p.size());
+    connect_half_edges(triangles);
+  }
+};
+
+struct Closest {
+  double squared;
+  std::array<double, 3> weights;
+};
+
+// Closest point of a triangle (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+Closest closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ax = x - a;
+  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
+  double v = 0, w = 0;
+  if (d1 > 0 || d2 > 0) {
+    const Vec3 bx = x - b, cx = x - c;
+    const double d3 = ab.dot(bx), d4 = ac.dot(bx), d5 = ab.dot(cx), d6 = ac.dot(cx);
+    const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+    if (d3 >= 0 && d4 <= d3) {
+      v = 1;
+    } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+      v = d1 / (d1 - d3);
+    } else if (d6 >= 0 && d5 <= d6) {
+      w = 1;
+    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+      w = d2 / (d2 - d6);
+    } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+      w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+      v = 1 - w;
+    } else {
+      const double s = va + vb + vc;
+      if (s > 0) v = vb / s, w = vc / s;
+    }
+  }
+  const Vec3 q = a + v * ab + w * ac;
+  return {(x - q).squaredNorm(), {1 - v - w, v, w}};
+}
+
+// Walks from a triangle to neighbours that are closer.
+Closest walk(const TriangleSurface& t, const std::vector<Vec3>& p, const Vec3& x, int& face) {
+  Closest best = closest_on_triangle(x, p[t.faces[face][0]], p[t.faces[face][1]], p[t.faces[face][2]]);
+  for (int step = 0; step < 24; ++step) {
+    int better = -1;
+    Closest found = best;
+    const auto look = [&](int h) {
+      if (h < 0) return;
+      const int g = h / 3;
+      const Closest c = closest_on_triangle(x, p[t.faces[g][0]], p[t.faces[g][1]], p[t.faces[g][2]]);
+      if (c.squared < found.squared) found = c, better = g;
+    };
+    const int h = 3 * face;
+    for (int i = 0; i < 3; ++i) {
+      // On the edge opposite to corner i + 2, that is half-edge i.
+      if (best.weights[(i + 2) % 3] > 1e-12) continue;
+      const int o = t.opposite[h + i];
+      look(o);
+      // Around the ends: the triangles one further.
+      if (o >= 0) {
+        look(t.opposite[TriangleSurface::next(o)]);
+        look(t.opposite[TriangleSurface::previous(o)]);
+      }
+    }
+    if (better < 0) break;
+    best = found;
+    face = better;
+  }
+  return best;
+}
+
+// Symmetric positive definite blocks of 3 x 3 between vertices that share a face, in compressed rows.
+struct BlockMatrix {
+  std::vector<int> row, column;
+  std::vector<Eigen::Matrix3d> block;
+
+  explicit BlockMatrix(const QuadMesh& mesh) {
+    const int n = static_cast<int>(mesh.points.size());
+    std::vector<std::vector<int>> neighbours(n);
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
+        for (std::int64_t j = mesh.offsets[f]; j < mesh.offsets[f + 1]; ++j) neighbours[mesh.indices[i]].push_back(mesh.indices[j]);
+    row.push_back(0);
+    for (std::vector<int>& list : neighbours) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+      column.insert(column.end(), list.begin(), list.end());
+      row.push_back(static_cast<int>(column.size()));
+    }
+    block.resize(column.size());
+  }
+  int find(int i, int j) const { return static_cast<int>(std::lower_bound(column.begin() + row[i], column.begin() + row[i + 1], j) - column.begin()); }
+};
+
+// Edge neighbours of every vertex, for the uniform Laplacian (the mean of the neighbours less the vertex).
+struct Neighbours {
+  std::vector<int> row, column;
+  explicit Neighbours(const QuadMesh& mesh) {
+    std::vector<std::vector<int>> lists(mesh.points.size());
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) {
+        const int a = mesh.indices[i], b = mesh.indices[i + 1 < mesh.offsets[f + 1] ? i + 1 : mesh.offsets[f]];
+        lists[a].push_back(b);
+        lists[b].push_back(a);
+      }
+    row.push_back(0);
+    for (std::vector<int>& list : lists) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+      column.insert(column.end(), list.begin(), list.end());
+      row.push_back(static_cast<int>(column.size()));
+    }
+  }
+  Vec3 laplacian(const std::vector<Vec3>& x, int v) const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = row[v]; k < row[v + 1]; ++k) sum += x[column[k]];
+    return sum / std::max(1, row[v + 1] - row[v]) - x[v];
+  }
+  // The transposed operator.
+  Vec3 transposed(const std::vector<Vec3>& x, int v) const {
+    Vec3 sum = -x[v];
+    for (int k = row[v]; k < row[v + 1]; ++k) {
+      const int w = column[k];
+      sum += x[w] / std::max(1, row[w + 1] - row[w]);
+    }
+    return sum;
+  }
+};
+
+template <class Body>
+void for_all(int n, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, n, 2048), [&](const tbb::blocked_range<int>& r) {
+    for (int i = r.begin(); i < r.end(); ++i) body(i);
+  });
+}
+
+// In a fixed order, whatever the number of threads.
+double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+std::vector<Vec3> vertex_normals(const QuadMesh& mesh) {
+  std::vector<Vec3> normals(mesh.points.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::int64_t begin = mesh.offsets[f], n = mesh.offsets[f + 1] - begin;
+    Vec3 sum = Vec3::Zero();
+    const Vec3& origin = mesh.points[mesh.indices[begin]];
+    for (std::int64_t i = 1; i + 1 < n; ++i) sum += (mesh.points[mesh.indices[begin + i]] - origin).cross(mesh.points[mesh.indices[begin + i + 1]] - origin);
+    for (std::int64_t i = 0; i < n; ++i) normals[mesh.indices[begin + i]] += sum;
+  }
+  for (Vec3& n : normals) {
+    const double l = n.norm();
+    if (l > 0) n /= l;
+  }
+  return normals;
+}
+
+}  // namespace
+
+std::vector<char> boundary_vertices(const QuadMesh& mesh) {
+  std::vector<std::pair<int, int>> edges;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
+      edges.push_back(std::minmax<int>(mesh.indices[i], mesh.indices[i + 1 < mesh.offsets[f + 1] ? i + 1 : mesh.offsets[f]]));
+  std::sort(edges.begin(), edges.end());
+  std::vector<char> boundary(mesh.points.size(), 0);
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t j = i + 1;
+    while (j < edges.size() && edges[j] == edges[i]) ++j;
+    if (j == i + 1) boundary[edges[i].first] = boundary[edges[i].second] = 1;
+    i = j;
+  }
+  return boundary;
+}
+
+std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples) {
+  const TriangleCover cover(mesh);
+  std::vector<int> face_of(cover.triangles.faces.size());
+  for (std::size_t f = 0; f < cover.first.size(); ++f)
+    for (int t = cover.first[f]; t < (f + 1 < cover.first.size() ? cover.first[f + 1] : static_cast<int>(face_of.size())); ++t) face_of[t] = static_cast<int>(f);
+  std::vector<double> result(samples.size());
+  for_all(static_cast<int>(samples.size()), [&](int i) {
+    int t = cover.first[samples[i].face];
+    result[i] = walk(cover.triangles, mesh.points, samples[i].position, t).squared;
+    samples[i].face = face_of[t];
+  });
+  return result;
+}
+
+void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress) {
+  const int n = static_cast<int>(mesh.points.size());
+  if (n == 0 || samples.empty()) return;
+  BlockMatrix matrix(mesh);
+  const Neighbours neighbours(mesh);
+  // A sample counts as the area it stands for; the regulariser is measured against all that falls to one vertex.
+  const double regularizer = options.smoothness * static_cast<double>(samples.size()) / n;
+  struct Anchor {
+    std::array<int, 3> v;
+    std::array<double, 3> w;
+  };
+  std::vector<Anchor> anchors(samples.size());
+  for (int round = 0; round < options.rounds; ++round) {
+    progress(static_cast<double>(round) / options.rounds);
+    const TriangleCover cover(mesh);
+    std::vector<int> face_of(cover.triangles.faces.size());
+    for (std::size_t f = 0; f < cover.first.size(); ++f)
+      for (int t = cover.first[f]; t < (f + 1 < cover.first.size() ? cover.first[f + 1] : static_cast<int>(face_of.size())); ++t) face_of[t] = static_cast<int>(f);
+    for_all(static_cast<int>(samples.size()), [&](int i) {
+      int t = cover.first[samples[i].face];
+      const Closest c = walk(cover.triangles, mesh.points, samples[i].position, t);
+      samples[i].face = face_of[t];
+      anchors[i] = {cover.triangles.faces[t], c.weights};
+    });
+    for (Eigen::Matrix3d& b : matrix.block) b.setZero();
+    std::vector<Vec3> right(n, Vec3::Zero());
+    const double a = options.tangential;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vec3& normal = samples[i].normal;
+      const Eigen::Matrix3d metric = a * Eigen::Matrix3d::Identity() + (1 - a) * normal * normal.transpose();
+      const Vec3 target = metric * samples[i].position;
+      for (int p = 0; p < 3; ++p) {
+        if (anchors[i].w[p] == 0) continue;
+        right[anchors[i].v[p]] += anchors[i].w[p] * target;
+        for (int q = 0; q < 3; ++q)
+          if (anchors[i].w[q] != 0) matrix.block[matrix.find(anchors[i].v[p], anchors[i].v[q])] += anchors[i].w[p] * anchors[i].w[q] * metric;
+      }
+    }
+    // The Laplacian's normal part stays what it is (curvature), its tangential part is drawn to zero.
+    const std::vector<Vec3> normals = vertex_normals(mesh);
+    std::vector<Vec3> wanted(n);
+    for_all(n, [&](int v) { wanted[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(normals[v] * normals[v].dot(neighbours.laplacian(mesh.points, v))); });
+    std::vector<Vec3> bent(n);
+    const auto apply = [&](const std::vector<Vec3>& x, std::vector<Vec3>& y) {
+      for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : neighbours.laplacian(x, v); });
+      for_all(n, [&](int v) {
+        Vec3 sum = regularizer * neighbours.transposed(bent, v);
+        for (int k = matrix.row[v]; k < matrix.row[v + 1]; ++k) sum.noalias() += matrix.block[k] * x[matrix.column[k]];
+        y[v] = fixed[v] ? Vec3(Vec3::Zero()) : sum;
+      });
+    };
+    // Conjugate gradients on the free vertices, preconditioned by the diagonal blocks.
+    std::vector<Eigen::Matrix3d> inverse(n);
+    for_all(n, [&](int v) {
+      const double diagonal = regularizer * 1.25;
+      inverse[v] = (matrix.block[matrix.find(v, v)] + (diagonal + 1e-12) * Eigen::Matrix3d::Identity()).inverse();
+    });
+    std::vector<Vec3> residual(n), z(n), direction(n), image(n);
+    {
+      // The residual at the present positions; fixed vertices enter as data, their own Laplacian being no term.
+      std::vector<Vec3> y(n);
+      for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(neighbours.laplacian(mesh.points, v) - wanted[v]); });
+      for_all(n, [&](int v) {
+        Vec3 sum = regularizer * neighbours.transposed(bent, v);
+        for (int k = matrix.row[v]; k < matrix.row[v + 1]; ++k) sum.noalias() += matrix.block[k] * mesh.points[matrix.column[k]];
+        residual[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(right[v] - sum);
+      });
+    }
+    for_all(n, [&](int v) { z[v] = inverse[v] * residual[v]; });
+    direction = z;
+    double rho = dot(residual, z);
+    const double first = rho;
+    for (int iteration = 0; iteration < options.iterations && rho > 1e-10 * first; ++iteration) {
+      progress.check();
+      apply(direction, image);
+      const double curvature = dot(direction, image);
+      if (!(curvature > 0)) break;
+      const double step = rho / curvature;
+      for_all(n, [&](int v) {
+        mesh.points[v] += step * direction[v];
+        residual[v] -= step * image[v];
+        z[v] = inverse[v] * residual[v];
+      });
+      const double fresh = dot(residual, z);
+      const double ratio = fresh / rho;
+      rho = fresh;
+      for_all(n, [&](int v) { direction[v] = z[v] + ratio * direction[v]; });
+    }
+  }
+  progress(1);
+}
+
+}  // namespace hybrid_mesh

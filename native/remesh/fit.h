@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "base/context.h"
+#include "hierarchy/hybrid_mesh.h"
+
+namespace hybrid_mesh {
+
+// A point of the surface that the mesh is to come close to, and a face of the mesh near it.
+struct FitSample {
+  Vec3 position, normal;
+  int face = 0;
+};
+
+struct FitOptions {
+  int rounds = 4;                 // each finds closest points anew
+  double tangential = 0.03;       // weight of the distance along the surface against that along its normal
+  double smoothness = 0.025;      // weight of the Laplacian's tangential part, which keeps quads from folding
+  int iterations = 60;            // of conjugate gradients a round, at most
+};
+
+// Moves the vertices of a polygon mesh so that the mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay. Samples' faces are updated to
+// those that hold their closest points. Returns each sample's squared distance to the mesh before its last move when `distances` is given.
+// Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
+void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress);
+
+// Squared distance of every sample to the mesh, by walking from its face; updates the faces.
+std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples);
+
+// Vertices on the mesh's boundary.
+std::vector<char> boundary_vertices(const QuadMesh& mesh);
+
+}  // namespace hybrid_mesh
