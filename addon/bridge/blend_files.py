@@ -7,7 +7,7 @@ import bpy
 import numpy
 
 from .. import registration
-from ..core.native import explain, native, native_path
+from ..core.native import explain, native
 from . import levels, meshes
 from .arrays import MatrixError
 
@@ -45,7 +45,7 @@ def write(hmesh, name, report, target):
     """A .blend that holds the levels of a .hmesh and nothing else."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     registration.register()
-    hierarchy = native().load_hierarchy(native_path(hmesh))
+    hierarchy = native().load_hierarchy(hmesh)
     parts = [(level, hierarchy.level(level)) for level in hierarchy.level_names]
     built = levels.build(name, parts, numpy.eye(4), bpy.context.scene)
     levels.show_preview_only(built)

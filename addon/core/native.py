@@ -17,16 +17,6 @@ def native():
     return _native
 
 
-def native_path(path):
-    """A path in the form that the module takes: text, or bytes where the name is not valid UTF-8."""
-    path = os.fspath(path)
-    try:
-        path.encode("utf-8")
-    except UnicodeEncodeError:
-        return os.fsencode(path)
-    return path
-
-
 def explain(error, path=None):
     """One line for people that says what went wrong, whatever was raised. `path` is left out of it: the caller names the input."""
     kind = type(error).__name__

@@ -9,7 +9,7 @@ import time
 
 from . import report as reports
 from . import settings as settings_module
-from .native import explain, native, native_path
+from .native import explain, native
 from .process import RESULT_MARK
 from .version import VERSION
 
@@ -36,7 +36,7 @@ def remesh(job):
         mesh = _load_arrays(job["arrays"])
     else:
         _refuse_unreadable(job["path"])
-        mesh = module.read_mesh(native_path(job["path"]))
+        mesh = module.read_mesh(job["path"])
     read = time.monotonic()
     settings = settings_module.from_mapping(job["settings"])
     result = module.remesh(*mesh, settings.native())
@@ -44,15 +44,15 @@ def remesh(job):
 
     stem = os.path.join(job["folder"], job["name"])
     report = finished_report(result.report, job, settings)
-    result.hierarchy.save(native_path(stem + ".hmesh"), json.dumps({"name": job["name"], "settings": settings.reported(), "version": VERSION}))
+    result.hierarchy.save(stem + ".hmesh", json.dumps({"name": job["name"], "settings": settings.reported(), "version": VERSION}))
     if job["exports"]:
         final = result.final_mesh()
         for form in job["exports"]:
-            module.write_mesh(native_path(f"{stem}.{form}"), final["points"], final["offsets"], final["indices"])
+            module.write_mesh(f"{stem}.{form}", final["points"], final["offsets"], final["indices"])
     if job["repaired"]:
         repaired = result.repaired()[:3]
         for form in job["exports"] or ["ply"]:
-            module.write_mesh(native_path(f"{stem}.repaired.{form}"), *repaired)
+            module.write_mesh(f"{stem}.repaired.{form}", *repaired)
     seconds = {"read": round(read - began, 4), **report.get("seconds", {})}
     seconds["write"] = round(time.monotonic() - worked, 4)
     seconds.pop("total", None)  # the native part's; here is the whole, and it stands last
@@ -84,7 +84,7 @@ def compare(job):
         job["path"] = path
         try:
             _refuse_unreadable(path)
-            meshes.append(module.read_mesh(native_path(path)))
+            meshes.append(module.read_mesh(path))
         except Exception as error:
             return {"error": f"{path}: {explain(error, path)}"}
     return {"distance": module.compare(*meshes[0][:3], *meshes[1][:3], job["samples"])}
@@ -93,7 +93,7 @@ def compare(job):
 def info(job):
     module = native()
     _refuse_unreadable(job["path"])
-    hierarchy = module.load_hierarchy(native_path(job["path"]))
+    hierarchy = module.load_hierarchy(job["path"])
     answer = {"info": json.loads(hierarchy.info())}
     if job["check"]:
         answer["problems"] = list(hierarchy.check())

@@ -236,9 +236,16 @@ class Job:
         return remesh(*self._mesh, self._settings)
 
 
+_jobs = []
+
+
 def start_remesh(points, offsets, indices, settings):
-    return Job((points, offsets, indices), settings)
+    _jobs.append(Job((points, offsets, indices), settings))
+    return _jobs[-1]
 
 
 def shutdown_jobs():
-    pass
+    while _jobs:
+        job = _jobs.pop()
+        job.cancel()
+        job.wait()

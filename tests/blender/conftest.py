@@ -53,6 +53,7 @@ class World:
         return obj
 
     def select(self, *objects):
+        bpy.context.view_layer.update()
         for obj in bpy.context.view_layer.objects:
             obj.select_set(obj in objects)
         bpy.context.view_layer.objects.active = objects[-1] if objects else None

@@ -225,7 +225,12 @@ def no_area(world):
 
 def not_finite(world):
     source = world.scan("infinite")
-    source.data.vertices[0].co.x = float("inf")
+    # All at once: one by one Blender clamps what is not finite.
+    points = numpy.empty(3 * len(source.data.vertices), dtype=numpy.float32)
+    source.data.vertices.foreach_get("co", points)
+    points[7] = numpy.nan
+    source.data.vertices.foreach_set("co", points)
+    source.data.update()
     return {}
 
 

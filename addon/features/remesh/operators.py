@@ -47,7 +47,8 @@ class HYBRID_MESH_OT_remesh(RemeshProperties, NativeJobOperator):
             try:
                 source = meshes.read_source(obj, graph)
             except (meshes.SourceError, arrays.MatrixError) as error:
-                raise ValueError(f"{obj.name}: {error}") from error
+                tasks.append(Task(obj.name, _refusal(error)))
+                continue
             tasks.append(Task(obj.name, _starter(module, source.mesh, settings), (source, settings)))
         if not tasks:
             raise ValueError("No mesh object is selected")
@@ -60,9 +61,7 @@ class HYBRID_MESH_OT_remesh(RemeshProperties, NativeJobOperator):
             if task.name not in context.scene.objects:
                 raise ValueError(f"{task.name}: the object is gone from the scene; nothing was made")
             sources.append(context.scene.objects[task.name])
-        built = [
-            _build(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)
-        ]
+        built = [_build(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)]
         _select(context, [one.preview for one in built])
         if self.hide_source:
             for obj in sources:
@@ -87,6 +86,15 @@ class HYBRID_MESH_OT_preset(bpy.types.Operator):
 
 def _starter(module, mesh, settings):
     return lambda: module.start_remesh(*mesh, settings.native())
+
+
+def _refusal(error):
+    """A start that fails: the object is named among the errors, and the others are done."""
+
+    def start():
+        raise error
+
+    return start
 
 
 def _build(context, obj, result, source, settings):

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""For tests that need a window: Python steps between which Blender's event loop runs."""
+
+import os
+import sys
+import time
+import traceback
+
+import bpy
+
+
+class Watched:
+    """stderr that remembers whether a traceback went by; Blender prints what a panel's draw raises and goes on."""
+
+    def __init__(self, stream):
+        self.stream, self.text = stream, ""
+
+    def write(self, text):
+        self.text += text
+        return self.stream.write(text)
+
+    def flush(self):
+        self.stream.flush()
+
+
+def run(steps, quit_at_end=True):
+    """steps: a generator function; each yield is the number of seconds until it goes on. Ends Blender with 1 where something is wrong."""
+    sys.stderr = Watched(sys.stderr)
+
+    def whole():
+        press("ESC")  # the splash screen
+        yield 0.5
+        yield from steps()
+
+    generator = whole()
+
+    def advance():
+        try:
+            wait = next(generator, None)
+            if wait is not None:
+                return wait
+            assert "Traceback" not in sys.stderr.text, "a traceback was printed"
+        except BaseException:
+            traceback.print_exc()
+            sys.stderr.flush()
+            sys.stdout.flush()
+            os._exit(1)
+        print("window test passed", flush=True)
+        if quit_at_end:
+            bpy.ops.wm.quit_blender()
+        return None
+
+    bpy.app.timers.register(advance, first_interval=1.5)
+
+
+def view():
+    """The context members of the 3D view, for temp_override."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return {"window": window, "screen": window.screen, "area": area, "region": region, "space_data": area.spaces.active}
+
+
+def press(key):
+    window = bpy.context.window_manager.windows[0]
+    where = {"x": window.width // 2, "y": window.height // 2}
+    window.event_simulate(type=key, value="PRESS", **where)
+    window.event_simulate(type=key, value="RELEASE", **where)
+
+
+def wait_until(condition, limit=60.0):
+    """Yields until the condition holds; fails after `limit` seconds. Use with `yield from`; returns the seconds that it took."""
+    began = time.monotonic()
+    while not condition():
+        assert time.monotonic() - began < limit, "waited in vain"
+        yield 0.01
+    return time.monotonic() - began
+
+
+def screenshot(name):
+    """Kept for people where HYBRID_MESH_SCREENSHOTS names a folder."""
+    folder = os.environ.get("HYBRID_MESH_SCREENSHOTS")
+    if folder:
+        with bpy.context.temp_override(**view()):
+            bpy.ops.screen.screenshot(filepath=os.path.join(folder, name + ".png"))
+
+
+def large_sphere(rings=160):
+    """About 2 * rings^2 vertices, lumpy, selected and active."""
+    import numpy
+
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=2 * rings, ring_count=rings, radius=1)
+    obj = bpy.context.object
+    points = numpy.empty(3 * len(obj.data.vertices), dtype=numpy.float32)
+    obj.data.vertices.foreach_get("co", points)
+    points = points.reshape(-1, 3)
+    points *= (1 + 0.2 * numpy.sin(4 * points[:, :1]) * numpy.cos(3 * points[:, 1:2]))
+    obj.data.vertices.foreach_set("co", points.ravel())
+    obj.data.update()
+    obj.name = "sphere"
+    return obj

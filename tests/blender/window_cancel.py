@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Esc ends a running remesh of 50,000 vertices within half a second and leaves nothing; one that is let run is one undo step."""
+
+import os
+import sys
+import time
+
+import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import stepper  # noqa: E402
+from hybrid_mesh import jobs  # noqa: E402
+
+
+def made():
+    return [name for name in bpy.data.collections.keys() if name.endswith(" hierarchy")]
+
+
+def steps():
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.ops.object.delete()
+        stepper.large_sphere()
+    yield 3  # the first drawing of the view, on a software renderer, is not what is measured
+    for delay in (0.3, 1.0):
+        with bpy.context.temp_override(**stepper.view()):
+            assert bpy.ops.hybrid_mesh.remesh("INVOKE_DEFAULT", vertices=50000) == {"RUNNING_MODAL"}
+        yield delay
+        assert jobs.running(), "it was done before Esc could be pressed"
+        began = time.monotonic()
+        stepper.press("ESC")
+        yield from stepper.wait_until(lambda: not jobs.running(), 10)
+        seconds = time.monotonic() - began
+        print(f"Esc after {delay} s: ended in {seconds:.2f} s")
+        assert seconds < 0.5
+        yield 0.2
+        assert not made() and len(bpy.data.objects) == 1
+        yield 1
+
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.ed.undo_push(message="before")
+        assert bpy.ops.hybrid_mesh.remesh("INVOKE_DEFAULT", True, vertices=2000) == {"RUNNING_MODAL"}
+        # A second one has to wait its turn.
+        assert bpy.ops.hybrid_mesh.remesh("INVOKE_DEFAULT", vertices=2000) == {"CANCELLED"}
+    yield from stepper.wait_until(lambda: not jobs.running())
+    yield 0.3
+    assert made() == ["sphere hierarchy"]
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.ed.undo()
+    yield 0.2
+    assert not made() and "sphere" in bpy.data.objects, "more or less than one undo step"
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.ed.redo()
+    yield 0.2
+    assert made() == ["sphere hierarchy"]
+
+
+stepper.run(steps)

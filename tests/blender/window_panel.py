@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar panels draw, before and after a remesh, and the preview's level changes what the view shows."""
+
+import os
+import sys
+
+import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import stepper  # noqa: E402
+from hybrid_mesh import jobs, registration  # noqa: E402
+from hybrid_mesh.bridge import levels  # noqa: E402
+
+
+def steps():
+    view = stepper.view()
+    # The tab that is open at first, since no script can choose another in this version.
+    panels = [cls for cls in registration.CLASSES if issubclass(cls, bpy.types.Panel)]
+    for cls in reversed(panels):
+        bpy.utils.unregister_class(cls)
+    for cls in panels:
+        cls.bl_category = "Item"
+        cls.bl_order = getattr(cls, "bl_order", 0) - 10
+        bpy.utils.register_class(cls)
+    view["space_data"].show_region_ui = True
+    bpy.context.preferences.view.ui_scale = 0.8
+    with bpy.context.temp_override(**view):
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.ops.object.delete()
+        stepper.large_sphere(40)
+    yield 0.5
+    stepper.screenshot("panel_before")
+    bpy.context.scene.hybrid_mesh.vertices = 3000
+    with bpy.context.temp_override(**stepper.view()):
+        settings = bpy.context.scene.hybrid_mesh
+        assert bpy.ops.hybrid_mesh.remesh("INVOKE_DEFAULT", vertices=settings.vertices, hide_source=settings.hide_source) == {"RUNNING_MODAL"}
+    yield from stepper.wait_until(lambda: not jobs.running())
+    yield 0.5
+    preview = bpy.data.objects["sphere.preview"]
+    shading = stepper.view()["space_data"].shading
+    shading.type, shading.color_type = "SOLID", "VERTEX"
+    stepper.view()["space_data"].overlay.show_wireframes = True
+    for level in (len(levels_of(preview)) - 1, 1, 0):
+        levels.set_level(preview, level)
+        yield 0.5
+        stepper.screenshot(f"panel_level{level}")
+    bpy.context.scene.hybrid_mesh.refinement = "ADAPTIVE"
+    bpy.context.scene.hybrid_mesh.base = "GIVEN"
+    yield 0.5
+
+
+def levels_of(preview):
+    return [obj for obj in preview.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.role == "LEVEL"]
+
+
+stepper.run(steps)
