@@ -15,9 +15,14 @@ import numpy as np
 def main(source, target, faces):
     data = np.load(source)
     points, offsets, indices = data["points"], data["offsets"], data["indices"]
+    # Blender calls a mesh with edges shorter than 0.0001 not manifold, whatever its size.
+    following = np.arange(1, len(indices) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    shortest = np.linalg.norm(points[indices] - points[indices[following]], axis=1).min()
+    scale = max(1.0, 2e-4 / shortest) if shortest > 0 else 1.0
     mesh = bpy.data.meshes.new("input")
     mesh.vertices.add(len(points))
-    mesh.vertices.foreach_set("co", points.astype(np.float32).ravel())
+    mesh.vertices.foreach_set("co", (points * scale).astype(np.float32).ravel())
     mesh.loops.add(len(indices))
     mesh.loops.foreach_set("vertex_index", indices.astype(np.int32))
     mesh.polygons.add(len(offsets) - 1)
@@ -46,7 +51,7 @@ def main(source, target, faces):
     mesh.loops.foreach_get("vertex_index", corners)
     np.savez(
         target,
-        points=result.reshape(-1, 3).astype(np.float64),
+        points=result.reshape(-1, 3).astype(np.float64) / scale,
         offsets=np.concatenate([[0], np.cumsum(totals, dtype=np.int64)]),
         indices=corners,
         seconds=seconds,
