@@ -40,7 +40,8 @@ struct CloseFile {
 std::string read_bytes(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw Error(ErrorCode::Io, path + ": " + (error ? error.message() : "no such file"));
+  if (status.type() == fs::file_type::not_found) throw Error(ErrorCode::Io, path + ": no such file");
+  if (!fs::exists(status)) throw Error(ErrorCode::Io, path + ": " + error.message());
   if (!fs::is_regular_file(status)) throw Error(ErrorCode::Io, path + ": not a regular file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw Error(ErrorCode::Io, path + ": " + error.message());

@@ -24,14 +24,13 @@ bool equals(std::string_view token, std::string_view lower_case) {
   return true;
 }
 
-// Binary files may begin with "solid" too: their size decides, then whether the second word line looks like text.
+// Binary files may begin with "solid" too: their size decides, then whether there are control characters, which every facet count has.
 bool is_text(std::string_view bytes) {
   if (bytes.size() >= header_size && bytes.size() == header_size + facet_size * std::uint64_t{little_endian(bytes.data() + 80)}) return false;
+  for (const char c : bytes.substr(0, 1000))
+    if (c >= 0 && c < ' ' && !is_blank(c) && !is_line_end(c)) return false;
   TextScanner scanner(bytes);
-  if (!equals(scanner.token(), "solid")) return false;
-  scanner.next_line();
-  const std::string_view token = scanner.token();
-  return token.empty() || equals(token, "facet") || equals(token, "endsolid");
+  return equals(scanner.token(), "solid");
 }
 
 PolygonSoup read_text(std::string_view bytes, const std::string& name) {
