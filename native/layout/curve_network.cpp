@@ -622,10 +622,7 @@ int CurveNetwork::split_boundary_edge(PatchedSurface& out, int h) {
   const int a = fine.faces[f][i], b = fine.faces[f][j];
   const int m = static_cast<int>(fine.points.size());
   fine.points.push_back(0.5 * (fine.points[a] + fine.points[b]));
-  PointSource middle;
-  const PointSource &pa = out.source[a], &pb = out.source[b];
-  middle.vertices = {pa.vertices[0], pb.vertices[0], -1};
-  middle.weights = {0.5, 0.5, 0};
+  const PointSource middle = middle_of(out.source[a], out.source[b]);
   out.source.push_back(middle);
   std::array<int, 3> second = fine.faces[f];
   fine.faces[f][j] = m;

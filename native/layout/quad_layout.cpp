@@ -29,10 +29,10 @@ class QuadCoarsening {
     double area = 0;
     for (std::size_t v = 0; v < points_.size(); ++v)
       if (mesh_.vertex_alive(static_cast<int>(v))) area += quadrics_[v].area;
-    side_ = std::sqrt(area / std::max(1, options_.target_quads));
+    side_ = std::sqrt(area / std::max(1.0, options_.size));
     clean();
     int rounds = 0;
-    while (quad_count() > options_.target_quads) {
+    while (size() > options_.size) {
       progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
       if (!collapse_cheapest()) break;
       clean();
@@ -62,6 +62,13 @@ class QuadCoarsening {
     for (std::size_t f = 0; f < mate_.size(); ++f)
       if (mesh_.alive[f]) faces += is_pair(static_cast<int>(f)) ? 1 : 2;
     return faces / 2;
+  }
+  double size() const {
+    int sides = 0;
+    for (std::size_t f = 0; f < mate_.size(); ++f)
+      if (mesh_.alive[f])
+        for (std::size_t h = 3 * f; h < 3 * f + 3; ++h) sides += mesh_.opposite[h] < 0 ? (split_[f] == static_cast<int>(h) ? 2 : 1) : 0;
+    return quad_count() + options_.boundary_side * sides;
   }
   // Number of quads around a vertex less the regular number (4 inside, 2 at the boundary).
   int excess(int v) const {

@@ -29,11 +29,12 @@ struct QuadLayout {
 };
 
 struct QuadLayoutOptions {
-  int target_quads = 300;    // reached exactly where the topology allows
+  double size = 300;         // quads, plus `boundary_side` for each side on the boundary; not exceeded where the topology allows
+  double boundary_side = 0;
   std::uint64_t seed = 1;
 };
 
-// Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until `target_quads` are left.
+// Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until the size asked for is reached.
 // All is done by flips and collapses of `mesh`, appended to `log`. Every triangle finds a mate: on a closed mesh the dual is cubic and bridgeless (Petersen); one with
 // boundary is doubled along it, and a triangle whose mate is its own double becomes a quad by a node on its boundary edge.
 QuadLayout make_quad_layout(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,

@@ -40,22 +40,6 @@ std::vector<std::vector<int>> faces_of_patches(const PatchedSurface& surface) {
   return faces;
 }
 
-PointSource middle_of(const PointSource& a, const PointSource& b) {
-  PointSource m;
-  int n = 0;
-  for (const PointSource* p : {&a, &b})
-    for (int i = 0; i < 3; ++i) {
-      if (p->vertices[i] < 0) continue;
-      int k = 0;
-      while (k < n && m.vertices[k] != p->vertices[i]) ++k;
-      if (k == 3) throw Error(ErrorCode::Internal, "a surface point with more than three corners");
-      m.vertices[k] = p->vertices[i];
-      m.weights[k] += 0.5 * p->weights[i];
-      n = std::max(n, k + 1);
-    }
-  return m;
-}
-
 void split_edge(PatchedSurface& surface, int h) {
   TriangleSurface& mesh = surface.mesh;
   const int a = mesh.from(h), b = mesh.to(h), m = static_cast<int>(mesh.points.size());

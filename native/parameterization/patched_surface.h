@@ -29,6 +29,9 @@ inline std::array<double, 3> weights_in_face(const PointSource& source, const st
   return w;
 }
 
+// Half-way between two points that lie on one face.
+PointSource middle_of(const PointSource& a, const PointSource& b);
+
 // A surface cut into disk-shaped quadrilateral patches along its own edges. It covers the repaired surface exactly: each face lies on one face of that.
 struct PatchedSurface {
   TriangleSurface mesh;                // source_face: face of the repaired surface

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hierarchy/hybrid_mesh.h"
+
+namespace hybrid_mesh {
+
+// Shape of a mesh's quads. The scaled Jacobian of a quad is the least over its corners of the sine of the corner's angle, signed by the quad's normal (the cross
+// product of its diagonals). Irregular: inner vertices where other than four faces meet.
+struct QuadQuality {
+  double jacobian_min = 0, jacobian_p05 = 0, jacobian_median = 0;
+  double inverted = 0;  // fraction of the quads
+  std::int64_t quads = 0, triangles = 0;
+};
+
+QuadQuality quad_quality(const QuadMesh& mesh);
+
+// Per vertex: is it irregular?
+std::vector<char> irregular_vertices(const QuadMesh& mesh);
+
+}  // namespace hybrid_mesh

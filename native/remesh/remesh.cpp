@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/remesh.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <queue>
+
+#include "hierarchy/stretch.h"
+#include "layout/base_domain.h"
+#include "parameterization/global_map.h"
+#include "parameterization/initial_map.h"
+#include "parameterization/patch_extraction.h"
+#include "remesh/quality.h"
+#include "remesh/surface_samples.h"
+#include "remesh/working_surface.h"
+#include "surface/distance.h"
+#include "surface/topology_summary.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Stopwatch {
+ public:
+  void start(const char* stage) {
+    stop();
+    stage_ = stage;
+    begin_ = Clock::now();
+  }
+  void stop() {
+    if (!stage_) return;
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    total_ += seconds;
+    json_[stage_] = json_.value(stage_, 0.0) + seconds;
+    stage_ = nullptr;
+  }
+  Json json() const {
+    Json j = json_;
+    j["total"] = total_;
+    return j;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const char* stage_ = nullptr;
+  Clock::time_point begin_;
+  double total_ = 0;
+  Json json_ = Json::object();
+};
+
+// Levels and base size of a mesh with a vertex budget.
+struct Budget {
+  std::int64_t vertices = 0;
+  int levels = 0;
+  double base_size = 0;      // see BaseDomainOptions
+  double boundary_side = 0;
+};
+
+// Vertices of a uniform mesh: base quads B, Euler number chi, boundary sides E.
+std::int64_t uniform_vertices(std::int64_t quads, std::int64_t euler, std::int64_t sides, int levels) {
+  const std::int64_t cells = std::int64_t{1} << (2 * levels);
+  // At level 0: V = B + chi + E / 2, since 4 B = 2 E_all - E.
+  return levels == 0 ? quads + euler + sides / 2 : quads * cells + euler + (sides << levels) / 2;
+}
+
+class Remesher {
+ public:
+  Remesher(const PolygonSoup& input, const RemeshOptions& options, Context& context) : input_(input), options_(options), progress_(context) {}
+
+  RemeshResult run() {
+    check_options();
+    read_surface();
+    build_base();
+    build_levels();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  void check_options() const {
+    const auto refuse = [](const std::string& what) { throw Error(ErrorCode::InvalidInput, what); };
+    if (options_.vertices < 0) refuse("vertices must not be negative");
+    if (!(options_.error >= 0)) refuse("error must not be negative");
+    if (options_.levels > 12) refuse("levels must be at most 12");
+    if (!(options_.drop_components >= 0 && options_.drop_components < 1)) refuse("drop_components must be in [0, 1)");
+    if (options_.base == BaseSize::Given && options_.base_quads < 1) refuse("base_quads must be positive");
+  }
+
+  void read_surface() {
+    progress_.stage("repair");
+    watch_.start("repair");
+    RepairOptions repair_options;
+    repair_options.drop_components = options_.drop_components;
+    RepairReport repaired;
+    result_.repaired = repair(input_, repair_options, repaired, progress_.part(0, 0.05));
+    if (options_.strict && repaired.changed()) throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(repaired));
+    topology_ = summarize_topology(to_soup(result_.repaired));
+    placement_ = placement_of(result_.repaired.points);
+    Json r;
+    r["merged_points"] = repaired.merged_points;
+    r["isolated_points"] = repaired.isolated_points;
+    r["duplicate_faces"] = repaired.duplicate_faces;
+    r["degenerate_faces"] = repaired.degenerate_faces;
+    r["reoriented_faces"] = repaired.reoriented_faces;
+    r["nonmanifold_edges"] = repaired.nonmanifold_edges;
+    r["nonmanifold_vertices"] = repaired.nonmanifold_vertices;
+    r["one_sided_cuts"] = repaired.one_sided_cuts;
+    r["dropped_components"] = repaired.dropped_components;
+    report_["input"] = {{"vertices", input_.points.size()},
+                        {"faces", input_.polygon_count()},
+                        {"components", topology_.components},
+                        {"boundary_loops", topology_.boundary_loops},
+                        {"genus", topology_.genus},
+                        {"repaired", r}};
+    report_["topology"] = {{"loops", Json::array()}, {"tubes", Json::array()}};
+  }
+
+  static std::string describe(const RepairReport& r) {
+    std::string text;
+    const auto add = [&](std::int64_t n, const char* what) {
+      if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+    };
+    add(r.merged_points, "points to merge");
+    add(r.isolated_points, "isolated points");
+    add(r.duplicate_faces, "duplicate faces");
+    add(r.degenerate_faces, "degenerate faces");
+    add(r.reoriented_faces, "misoriented faces");
+    add(r.nonmanifold_edges, "non-manifold edges");
+    add(r.nonmanifold_vertices, "non-manifold vertices");
+    add(r.one_sided_cuts, "one-sided edges");
+    add(r.dropped_components, "components to drop");
+    return text;
+  }
+
+  // --- base domain and map -------------------------------------------------------------------------------------------------------
+  Budget plan_budget() const {
+    Budget b;
+    b.vertices = options_.vertices > 0 ? options_.vertices : static_cast<std::int64_t>(result_.repaired.points.size());
+    // Roughly what the topology asks for at least.
+    const double least = 6.0 * topology_.components + 8 * topology_.genus + 2.6 * topology_.boundary_loops;
+    const double enough = std::max(std::clamp(static_cast<double>(b.vertices) / 64, 20.0, 150.0), std::min(1.7 * least, b.vertices / 4.0));
+    if (options_.levels >= 0 && options_.refinement == Refinement::Uniform) {
+      b.levels = options_.levels;
+    } else {
+      while (b.levels < 6 && static_cast<double>(b.vertices) / std::pow(4.0, b.levels + 1) >= enough) ++b.levels;
+    }
+    set_levels(b, b.levels);
+    return b;
+  }
+  void set_levels(Budget& b, int levels) const {
+    b.levels = levels;
+    const double cells = std::pow(4.0, levels);
+    b.boundary_side = 0.5 * std::pow(2.0, levels) / cells;
+    b.base_size = (static_cast<double>(b.vertices) - static_cast<double>(topology_.euler)) / cells;
+    if (options_.base == BaseSize::Given) b.base_size = options_.base_quads, b.boundary_side = 0;
+    if (options_.base == BaseSize::Minimal) b.base_size = 1, b.boundary_side = 0;
+  }
+
+  void build_base() {
+    budget_ = plan_budget();
+    std::string failure;
+    std::int64_t least = -1;
+    for (int attempt = 0; attempt < 8; ++attempt) {
+      try {
+        const PatchedSurface patches = try_base(attempt);
+        std::int64_t sides = 0;
+        for (const auto& n : patches.neighbours)
+          for (const PatchSide& s : n) sides += s.patch < 0;
+        const std::int64_t needed = uniform_vertices(patches.patch_count(), topology_.euler, sides, budget_.levels);
+        const bool bound = options_.vertices > 0 && options_.refinement == Refinement::Uniform;
+        if (bound && needed > options_.vertices) {
+          least = least < 0 ? needed : std::min(least, needed);
+          if (budget_.levels == 0 || (options_.levels >= 0)) break;
+          set_levels(budget_, budget_.levels - 1);
+          continue;
+        }
+        return;
+      } catch (const Error& e) {
+        if (e.code() != ErrorCode::Internal) throw;
+        // Another base: nearby decisions differ, and a larger one is easier to map.
+        failure = e.what();
+      }
+    }
+    if (least >= 0) throw Error(ErrorCode::InvalidInput, "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(options_.vertices) + " allowed");
+    throw Error(ErrorCode::Internal, failure);
+  }
+
+  PatchedSurface try_base(int attempt) {
+    progress_.stage("base domain");
+    watch_.start("base");
+    working_ = make_working_surface(result_.repaired, placement_, static_cast<std::int64_t>(std::min(30.0 * budget_.base_size, 2e6)));
+    BaseDomainOptions base_options;
+    base_options.size = budget_.base_size;
+    base_options.boundary_side = budget_.boundary_side;
+    base_options.seed = options_.seed + 1000003ull * attempt;
+    PatchedSurface patches = make_base_domain(working_.mesh, base_options, progress_.part(0.05, 0.2));
+    progress_.stage("map");
+    watch_.start("map");
+    const std::vector<std::array<Vec2, 3>> corners = map_patches(patches, progress_.part(0.2, 0.25));
+    ChartMesh charts(patches, corners);
+    GlobalMapOptions map_options;
+    smooth_map(charts, patches, map_options, progress_.part(0.25, 0.5));
+    watch_.start("extract");
+    std::vector<PatchMap> maps = extract_patch_maps(charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
+    std::vector<std::array<SideLink, 4>> links(patches.patch_count());
+    for (int q = 0; q < patches.patch_count(); ++q)
+      for (int i = 0; i < 4; ++i) links[q][i] = {patches.neighbours[q][i].patch, patches.neighbours[q][i].side};
+    HybridMesh hierarchy = HybridMesh::from_base(patches.node_count, patches.nodes, links);
+    for (int q = 0; q < patches.patch_count(); ++q) {
+      const char* defect = find_map_defect(maps[q]);
+      if (*defect) throw Error(ErrorCode::Internal, "the map of base quad " + std::to_string(q) + ": " + defect);
+      working_.to_repaired(maps[q], result_.repaired);
+      hierarchy.set_map(q, std::move(maps[q]));
+    }
+    hierarchy.set_closure(options_.faces);
+    result_.hierarchy = std::move(hierarchy);
+    report_["base"] = {{"quads", patches.patch_count()}, {"vertices", patches.node_count}};
+    watch_.stop();
+    return patches;
+  }
+
+  // --- levels ----------------------------------------------------------------------------------------------------------------------
+  void build_levels() {
+    HybridMesh& h = result_.hierarchy;
+    input_unit_ = input_;
+    for (Vec3& p : input_unit_.points) p = placement_.to_unit(p);
+    if (options_.refinement == Refinement::Uniform)
+      refine_uniformly();
+    else
+      refine_adaptively();
+    progress_.stage("levels");
+    watch_.start("levels");
+    report_["levels"] = Json::array();
+    const int depth = h.depth();
+    for (int j = 0; j <= depth; ++j) {
+      const Progress part = progress_.part(0.8 + 0.15 * j / (depth + 1), 0.8 + 0.15 * (j + 1) / (depth + 1));
+      const bool last = j == depth;
+      QuadMesh mesh = last ? result_.final_mesh : h.level_mesh(j);
+      if (!last) fit(mesh, 3, part);
+      h.set_level_positions(j, mesh);
+      report_["levels"].push_back(describe_level(j, mesh, part));
+    }
+    watch_.stop();
+  }
+
+  std::int64_t samples_for(std::size_t vertices) const { return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000); }
+
+  void fit(QuadMesh& mesh, int rounds, const Progress& progress) {
+    const SurfaceSamples samples(result_.hierarchy, samples_for(mesh.points.size()));
+    std::vector<FitSample> on = samples.on(result_.hierarchy, mesh);
+    FitOptions fit_options;
+    fit_options.rounds = rounds;
+    fit_mesh(mesh, boundary_vertices(mesh), on, fit_options, progress);
+  }
+
+  double measured_l2(const QuadMesh& mesh, std::int64_t samples) {
+    DistanceOptions distance;
+    distance.samples = samples;
+    return surface_distance(input_unit_, to_soup(mesh), distance, progress_.part(0.6, 0.6)).l2;
+  }
+
+  void refine_uniformly() {
+    HybridMesh& h = result_.hierarchy;
+    progress_.stage("fit");
+    watch_.start("fit");
+    int levels = budget_.levels;
+    if (options_.error > 0 && options_.vertices == 0 && options_.levels < 0) levels = 0;
+    for (;;) {
+      h.refine_uniform(levels);
+      result_.final_mesh = h.level_mesh(levels);
+      fit(result_.final_mesh, 4, progress_.part(0.6, 0.8));
+      if (!(options_.error > 0) || options_.vertices > 0 || options_.levels >= 0) break;
+      if (measured_l2(result_.final_mesh, 50000) <= options_.error || levels >= 9) break;
+      ++levels;
+    }
+    watch_.stop();
+  }
+
+  // Splits the leaves with the largest squared distances first.
+  void refine_adaptively() {
+    HybridMesh& h = result_.hierarchy;
+    progress_.stage("adaptive refinement");
+    watch_.start("adaptive");
+    const std::int64_t budget = budget_.vertices;
+    const int deepest = options_.levels >= 0 ? options_.levels : 12;
+    while (h.depth() < deepest && 8 * h.leaf_counts().faces * 2 < 0.35 * static_cast<double>(budget)) h.refine_uniform(h.depth() + 1);
+    const SurfaceSamples samples(h, samples_for(static_cast<std::size_t>(budget)));
+    const double start = std::max(0.3, static_cast<double>(h.closed_vertex_count()) / budget);
+    const int rounds = 6;
+    for (int round = 0; round <= rounds; ++round) {
+      const Progress part = progress_.part(0.55 + 0.2 * round / (rounds + 1), 0.55 + 0.2 * (round + 1) / (rounds + 1));
+      QuadMesh mesh = h.final_mesh();
+      std::vector<FitSample> on = samples.on(h, mesh);
+      FitOptions fit_options;
+      fit_options.rounds = 2;
+      fit_mesh(mesh, boundary_vertices(mesh), on, fit_options, part);
+      if (options_.error > 0 && measured_l2(mesh, 100000) <= options_.error) break;
+      if (round == rounds) break;
+      const std::vector<double> squared = squared_distances(mesh, on);
+      std::vector<double> error(h.node_count(), 0);
+      for (std::size_t i = 0; i < on.size(); ++i) error[mesh.node[on[i].face]] += squared[i];
+      const double fraction = start + (1 - start) * (round + 1.0) / rounds;
+      split_worst(error, static_cast<std::int64_t>(fraction * static_cast<double>(budget)), budget, deepest);
+    }
+    watch_.start("fit");
+    result_.final_mesh = h.final_mesh();
+    fit(result_.final_mesh, 4, progress_.part(0.75, 0.8));
+    watch_.stop();
+  }
+
+  void split_worst(const std::vector<double>& error, std::int64_t target, std::int64_t budget, int deepest) {
+    HybridMesh& h = result_.hierarchy;
+    struct Entry {
+      double error;
+      int node;
+      bool operator<(const Entry& o) const { return error != o.error ? error < o.error : node > o.node; }
+    };
+    std::priority_queue<Entry> queue;
+    for (const int leaf : h.leaves())
+      if (h.level(leaf) < deepest) queue.push({error[leaf], leaf});
+    std::vector<int> refined;
+    int refused = 0;
+    while (h.closed_vertex_count() < target && !queue.empty() && refused < 40) {
+      const Entry worst = queue.top();
+      queue.pop();
+      if (!h.is_leaf(worst.node)) continue;
+      refined.clear();
+      // Close to the budget a split may reach beyond it by what it drags along: tried on a copy.
+      if (h.closed_vertex_count() > budget - std::max<std::int64_t>(400, budget / 50)) {
+        HybridMesh trial = h;
+        trial.refine_balanced(worst.node, &refined);
+        if (trial.closed_vertex_count() > budget) {
+          ++refused;
+          continue;
+        }
+        h = std::move(trial);
+      } else {
+        h.refine_balanced(worst.node, &refined);
+      }
+      // What a child keeps of its parent's error, as far as one can tell before it is fitted: squared distances shrink 16-fold, the area four-fold.
+      for (const int node : refined) {
+        const double parent = node < static_cast<int>(error.size()) ? error[node] : 0;
+        if (h.level(node) + 1 >= deepest) continue;
+        for (int k = 0; k < 4; ++k) queue.push({parent / 40, h.first_child(node) + k});
+      }
+      progress_.check();
+    }
+  }
+
+  // --- report ------------------------------------------------------------------------------------------------------------------------
+  Json describe_level(int j, const QuadMesh& mesh, const Progress& progress) {
+    const TopologySummary t = summarize_topology(to_soup(mesh));
+    DistanceOptions distance;
+    distance.samples = 40000;
+    const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), distance, progress);
+    const LevelStretch s = level_stretch(result_.hierarchy, mesh);
+    std::vector<double> sorted = s.stretch;
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = [&](double p) { return sorted.empty() ? 0.0 : sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * sorted.size()))]; };
+    const std::vector<char> irregular = irregular_vertices(mesh);
+    return {{"level", j},
+            {"vertices", mesh.points.size()},
+            {"quads", quad_quality(mesh).quads},
+            {"genus", t.genus},
+            {"components", t.components},
+            {"boundary_loops", t.boundary_loops},
+            {"l2", d.l2},
+            {"hausdorff", d.hausdorff},
+            {"stretch", {{"p05", at(0.05)}, {"p50", at(0.5)}, {"p95", at(0.95)}, {"max", sorted.empty() ? 0.0 : sorted.back()}}},
+            {"irregular_vertices", std::count(irregular.begin(), irregular.end(), 1)},
+            {"irregular_ops", Json::array()}};
+  }
+
+  void finish() {
+    HybridMesh& h = result_.hierarchy;
+    QuadMesh& mesh = result_.final_mesh;
+    progress_.stage("measure");
+    watch_.start("measure");
+    const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), DistanceOptions(), progress_.part(0.95, 0.99));
+    const TopologySummary t = summarize_topology(to_soup(mesh));
+    if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology_.components || t.boundary_loops != topology_.boundary_loops ||
+        t.euler != topology_.euler)
+      throw Error(ErrorCode::Internal, "the final mesh does not have the surface's topology");
+    const QuadQuality q = quad_quality(mesh);
+    const std::vector<char> irregular = irregular_vertices(mesh);
+    std::int64_t of_base = 0, of_transitions = 0;
+    for (std::size_t v = 0; v < irregular.size(); ++v) {
+      if (!irregular[v]) continue;
+      const VertexId id = mesh.vertex[v];
+      (id.kind() == VertexId::Kind::Free && id.index() < h.base_vertex_count() ? of_base : of_transitions) += 1;
+    }
+    std::int64_t regular = 0;
+    std::vector<char> has_hanging(h.node_count(), 0);
+    const std::int64_t leaves = h.leaf_counts().faces;
+    report_["final"] = {{"vertices", mesh.points.size()},
+                        {"quads", q.quads},
+                        {"triangles", q.triangles},
+                        {"l2", d.l2},
+                        {"hausdorff", d.hausdorff},
+                        {"boundary_hausdorff", d.boundary_hausdorff < 0 ? Json(nullptr) : Json(d.boundary_hausdorff)},
+                        {"genus", t.genus},
+                        {"components", t.components},
+                        {"boundary_loops", t.boundary_loops},
+                        {"regular_fraction", 1.0 - static_cast<double>(h.base_count()) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
+                        {"irregular_vertices", {{"base", of_base}, {"operations", 0}, {"transitions", of_transitions}}},
+                        {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
+    (void)regular;
+    h.set_final_positions(mesh);
+    watch_.stop();
+    place_result();
+    report_["seconds"] = watch_.json();
+    result_.report = std::move(report_);
+    progress_(1);
+  }
+
+  // Everything was computed around the origin: bring maps and meshes to where the input stands.
+  void place_result() {
+    HybridMesh& h = result_.hierarchy;
+    std::vector<QuadMesh> levels;
+    for (int j = 0; j <= h.depth(); ++j) levels.push_back(h.level_mesh(j));
+    for (const int root : h.roots())
+      if (const PatchMap* map = h.map(root)) {
+        PatchMap placed = *map;
+        for (Vec3& p : placed.positions) p = placement_.from_unit(p);
+        h.set_map(root, std::move(placed));
+      }
+    h.clear_positions();
+    for (int j = 0; j < static_cast<int>(levels.size()); ++j) {
+      for (Vec3& p : levels[j].points) p = placement_.from_unit(p);
+      h.set_level_positions(j, levels[j]);
+    }
+    for (Vec3& p : result_.final_mesh.points) p = placement_.from_unit(p);
+    h.set_final_positions(result_.final_mesh);
+  }
+
+  const PolygonSoup& input_;
+  const RemeshOptions& options_;
+  Progress progress_;
+  Stopwatch watch_;
+  RemeshResult result_;
+  Json report_;
+  TopologySummary topology_;
+  Placement placement_;
+  WorkingSurface working_;
+  PolygonSoup input_unit_;
+  Budget budget_;
+};
+
+}  // namespace
+
+RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    options.threads > 0 ? static_cast<std::size_t>(options.threads) : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  return Remesher(input, options, context).run();
+}
+
+}  // namespace hybrid_mesh
