@@ -461,20 +461,23 @@ void HybridMesh::refine_uniform(int levels) {
 
 void HybridMesh::balance(std::vector<int>* refined) {
   bool changed = true;
+  std::vector<int> coarse;
   while (changed) {
     changed = false;
     for (int n : leaves()) {
       if (!is_leaf(n)) continue;
+      coarse.clear();
       int finer_sides = 0;
-      bool coarse = false;
       for (int s = 0; s < 4; ++s) {
         finer_sides += has_finer_neighbour(n, s);
-        visit_corner(n, s, [&](int other, bool) { coarse |= nodes_[other].level > nodes_[n].level + 1; });
-        for (const SideLink& other : leaf_neighbours(n, s)) coarse |= nodes_[other.node].level > nodes_[n].level + 1;
+        // Looked at from the finer leaf: its corners show every coarser one, also where they lie inside that one's side.
+        visit_corner(n, s, [&](int other, bool) {
+          if (nodes_[other].level + 1 < nodes_[n].level) coarse.push_back(other);
+        });
       }
-      if (!coarse && finer_sides < 3) continue;
-      refine_balanced(n, refined);
-      changed = true;
+      if (finer_sides >= 3) coarse.push_back(n);
+      for (int leaf : coarse) refine_balanced(leaf, refined);
+      changed |= !coarse.empty();
     }
   }
   count_leaves();
