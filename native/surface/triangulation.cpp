@@ -60,8 +60,16 @@ class PolygonSplitter {
   bool is_ear(int i) {
     const int a = previous_[i], c = next_[i];
     if (cross(flat_[a], flat_[i], flat_[c]) <= 0) return false;
-    for (int k = next_[c]; k != a; k = next_[k]) {
-      if (!reflex_[k]) continue;
+    for (std::size_t r = 0; r < reflex_corners_.size();) {
+      const int k = reflex_corners_[r];
+      if (!reflex_[k]) {  // clipped or convex by now
+        listed_[k] = 0;
+        reflex_corners_[r] = reflex_corners_.back();
+        reflex_corners_.pop_back();
+        continue;
+      }
+      ++r;
+      if (k == a || k == i || k == c) continue;
       if (--tests_left_ < 0) return true;  // a polygon made to be slow: any split will do
       const Vec2& p = flat_[k];
       if (p == flat_[a] || p == flat_[i] || p == flat_[c]) continue;
@@ -76,8 +84,15 @@ class PolygonSplitter {
     bool operator<(const Ear& other) const { return roundness != other.roundness ? roundness < other.roundness : corner > other.corner; }
   };
 
-  void consider(int i) {
+  void mark_reflex(int i) {
     reflex_[i] = cross(flat_[previous_[i]], flat_[i], flat_[next_[i]]) <= 0;
+    if (!reflex_[i] || listed_[i]) return;
+    listed_[i] = 1;
+    reflex_corners_.push_back(i);
+  }
+
+  void consider(int i) {
+    mark_reflex(i);
     ++version_[i];
     if (is_ear(i)) ears_.push({roundness(flat_[previous_[i]], flat_[i], flat_[next_[i]]), i, version_[i]});
   }
@@ -99,8 +114,10 @@ class PolygonSplitter {
     previous_.resize(n), next_.resize(n);
     version_.assign(n, 0);
     reflex_.assign(n, 0);
+    listed_.assign(n, 0);
+    reflex_corners_.clear();
     for (int i = 0; i < n; ++i) previous_[i] = (i + n - 1) % n, next_[i] = (i + 1) % n;
-    for (int i = 0; i < n; ++i) reflex_[i] = cross(flat_[previous_[i]], flat_[i], flat_[next_[i]]) <= 0;
+    for (int i = 0; i < n; ++i) mark_reflex(i);
     for (int i = 0; i < n; ++i) consider(i);
     int some = 0;  // a corner that is left
     for (int left = n; left > 3; --left) {
@@ -118,6 +135,7 @@ class PolygonSplitter {
       triangles_.push_back({a, ear, c});
       next_[a] = c, previous_[c] = a;
       version_[ear] = -1;
+      reflex_[ear] = 0;
       some = c;
       consider(a);
       consider(c);
@@ -177,7 +195,8 @@ class PolygonSplitter {
   std::vector<Vec2> flat_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> previous_, next_, version_;
-  std::vector<char> reflex_;
+  std::vector<char> reflex_, listed_;
+  std::vector<int> reflex_corners_;  // all that are reflex, and some that no longer are
   std::priority_queue<Ear> ears_;
   std::int64_t tests_left_ = 0;
 };
