@@ -23,7 +23,8 @@ struct DistanceOptions {
 };
 
 // Area-weighted samples in both directions, closest points by an AABB tree, in parallel; the result does not depend on the number of
-// threads. Quads are split by the diagonal that leaves the flatter pair of triangles, larger polygons by a fan.
+// threads. Points of the surfaces count for the Hausdorff distance too. Polygons are split by triangulate().
+// Throws Error{InvalidInput} if one of the surfaces has no area.
 SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, const DistanceOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh
