@@ -8,7 +8,7 @@ import bpy
 from .core.native import NativeMissing, native
 from .core.tasks import TaskRun
 
-POLL_SECONDS = 0.05
+POLL_SECONDS = 0.1
 # What may go on while a job runs: looking around. Everything else could change what the job's result is put beside.
 _NAVIGATION = {
     "MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE",
@@ -27,6 +27,7 @@ class NativeJobOperator(bpy.types.Operator):
 
     _run = None
     _timer = None
+    _shown = ""
 
     def prepare(self, context):
         raise NotImplementedError
@@ -105,15 +106,16 @@ class NativeJobOperator(bpy.types.Operator):
         return {"FINISHED"} if made else {"CANCELLED"}
 
     def _show(self, context):
-        context.workspace.status_text_set(f"{self._run.status}   {self._run.progress:.0%}   (Esc cancels)")
-        context.window_manager.progress_update(int(self._run.progress * 100))
+        text = f"{self._run.status}   {self._run.progress:.0%}   (Esc cancels)"
+        if text != self._shown:  # Every change is a redraw.
+            self._shown = text
+            context.workspace.status_text_set(text)
 
     def _leave(self, context):
         _runs.discard(self._run)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
-            context.window_manager.progress_end()
             if context.workspace:
                 context.workspace.status_text_set(None)
 

@@ -9,7 +9,7 @@ FACES = ("quads", "transition", "triangles")
 BASES = ("auto", "min")
 
 MAXIMUM_VERTICES = 2**31 - 1
-MAXIMUM_LEVELS = 15
+MAXIMUM_LEVELS = 12
 MAXIMUM_BASE_QUADS = 10_000_000
 MAXIMUM_SEED = 2**64 - 1
 MAXIMUM_THREADS = 1024

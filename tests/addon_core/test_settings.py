@@ -16,7 +16,7 @@ def test_defaults_and_presets_are_valid():
     "name, value",
     [
         ("vertices", -1), ("vertices", 2**31), ("vertices", 1.5), ("vertices", True), ("error", -0.1), ("error", 1), ("error", float("nan")),
-        ("error", float("inf")), ("levels", -2), ("levels", 16), ("refinement", "both"), ("faces", "hexagons"), ("base", "most"), ("base", 0),
+        ("error", float("inf")), ("levels", -2), ("levels", 13), ("refinement", "both"), ("faces", "hexagons"), ("base", "most"), ("base", 0),
         ("base", 1.5), ("stretch_threshold", 0.5), ("stretch_threshold", float("nan")), ("drop_components", 1), ("drop_components", -0.1),
         ("seed", -1), ("seed", 2**64), ("threads", -1), ("threads", 5000),
     ],
