@@ -12,10 +12,13 @@
 namespace hybrid_mesh {
 namespace {
 
-// The mesh split into triangles, quads along the diagonal that leaves the flatter pair.
+// The mesh split into triangles, quads along the diagonal that leaves the flatter pair, and what lies across each triangle's edges. A coarse mesh may have two faces with the same
+// diagonal, so that adjacency goes by faces' sides, not by pairs of vertices of triangles.
 struct TriangleCover {
-  TriangleSurface triangles;
-  std::vector<int> first;  // per face: its first triangle
+  std::vector<std::array<int, 3>> faces;
+  std::vector<int> opposite;  // per half-edge 3 t + i, -1: none
+  std::vector<int> first;     // per face of the mesh: its first triangle
+  std::vector<int> face_of;   // per triangle
 
   explicit TriangleCover(const QuadMesh& mesh) {
     const std::vector<Vec3>& p = mesh.points;
@@ -24,15 +27,43 @@ struct TriangleCover {
       const double l = std::sqrt(n1.squaredNorm() * n2.squaredNorm());
       return l > 0 ? n1.dot(n2) / l : -1.0;
     };
+    struct Side {
+      std::int64_t key;
+      int half_edge;
+      bool operator<(const Side& o) const { return key != o.key ? key < o.key : half_edge < o.half_edge; }
+    };
+    std::vector<Side> sides;
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-      first.push_back(static_cast<int>(triangles.faces.size()));
+      first.push_back(static_cast<int>(faces.size()));
       const std::int32_t* v = &mesh.indices[mesh.offsets[f]];
       const int n = static_cast<int>(mesh.offsets[f + 1] - mesh.offsets[f]);
       const int start = n == 4 && flatness(v[1], v[2], v[3], v[0]) > flatness(v[0], v[1], v[2], v[3]) ? 1 : 0;
-      for (int i = 1; i + 1 < n; ++i) triangles.faces.push_back({v[start], v[(start + i) % n], v[(start + i + 1) % n]});
+      for (int i = 1; i + 1 < n; ++i) {
+        const int t = static_cast<int>(faces.size());
+        faces.push_back({v[start], v[(start + i) % n], v[(start + i + 1) % n]});
+        face_of.push_back(static_cast<int>(f));
+        opposite.insert(opposite.end(), {-1, -1, -1});
+        if (i > 1) {
+          opposite[3 * t] = 3 * (t - 1) + 2;
+          opposite[3 * (t - 1) + 2] = 3 * t;
+        }
+        for (const int k : {0, 1, 2}) {
+          if ((k == 0 && i > 1) || (k == 2 && i + 2 < n)) continue;  // a diagonal
+          const auto [low, high] = std::minmax(faces[t][k], faces[t][(k + 1) % 3]);
+          sides.push_back({(static_cast<std::int64_t>(low) << 32) | high, 3 * t + k});
+        }
+      }
     }
-    triangles.points.resize(p.size());
-    connect_half_edges(triangles);
+    std::sort(sides.begin(), sides.end());
+    for (std::size_t i = 0; i < sides.size();) {
+      std::size_t j = i + 1;
+      while (j < sides.size() && sides[j].key == sides[i].key) ++j;
+      if (j == i + 2) {
+        opposite[sides[i].half_edge] = sides[i + 1].half_edge;
+        opposite[sides[i + 1].half_edge] = sides[i].half_edge;
+      }
+      i = j;
+    }
   }
 };
 
@@ -71,7 +102,7 @@ Closest closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const V
 }
 
 // Walks from a triangle to neighbours that are closer.
-Closest walk(const TriangleSurface& t, const std::vector<Vec3>& p, const Vec3& x, int& face) {
+Closest walk(const TriangleCover& t, const std::vector<Vec3>& p, const Vec3& x, int& face) {
   Closest best = closest_on_triangle(x, p[t.faces[face][0]], p[t.faces[face][1]], p[t.faces[face][2]]);
   for (int step = 0; step < 24; ++step) {
     int better = -1;
@@ -209,14 +240,11 @@ std::vector<char> boundary_vertices(const QuadMesh& mesh) {
 
 std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples) {
   const TriangleCover cover(mesh);
-  std::vector<int> face_of(cover.triangles.faces.size());
-  for (std::size_t f = 0; f < cover.first.size(); ++f)
-    for (int t = cover.first[f]; t < (f + 1 < cover.first.size() ? cover.first[f + 1] : static_cast<int>(face_of.size())); ++t) face_of[t] = static_cast<int>(f);
   std::vector<double> result(samples.size());
   for_all(static_cast<int>(samples.size()), [&](int i) {
     int t = cover.first[samples[i].face];
-    result[i] = walk(cover.triangles, mesh.points, samples[i].position, t).squared;
-    samples[i].face = face_of[t];
+    result[i] = walk(cover, mesh.points, samples[i].position, t).squared;
+    samples[i].face = cover.face_of[t];
   });
   return result;
 }
@@ -236,14 +264,11 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSam
   for (int round = 0; round < options.rounds; ++round) {
     progress(static_cast<double>(round) / options.rounds);
     const TriangleCover cover(mesh);
-    std::vector<int> face_of(cover.triangles.faces.size());
-    for (std::size_t f = 0; f < cover.first.size(); ++f)
-      for (int t = cover.first[f]; t < (f + 1 < cover.first.size() ? cover.first[f + 1] : static_cast<int>(face_of.size())); ++t) face_of[t] = static_cast<int>(f);
     for_all(static_cast<int>(samples.size()), [&](int i) {
       int t = cover.first[samples[i].face];
-      const Closest c = walk(cover.triangles, mesh.points, samples[i].position, t);
-      samples[i].face = face_of[t];
-      anchors[i] = {cover.triangles.faces[t], c.weights};
+      const Closest c = walk(cover, mesh.points, samples[i].position, t);
+      samples[i].face = cover.face_of[t];
+      anchors[i] = {cover.faces[t], c.weights};
     });
     for (Eigen::Matrix3d& b : matrix.block) b.setZero();
     std::vector<Vec3> right(n, Vec3::Zero());
