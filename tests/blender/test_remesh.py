@@ -255,9 +255,13 @@ def test_the_good_ones_are_done_and_the_bad_one_is_named(world):
 
 def test_settings_out_of_bounds_cannot_be_given(world):
     world.scan()
-    bpy.ops.hybrid_mesh.remesh(vertices=500, levels=2, base="GIVEN", base_quads=100)
     with pytest.raises((TypeError, RuntimeError)):
         bpy.ops.hybrid_mesh.remesh(refinement="BOTH")
+
+
+def test_levels_and_base_are_as_given(world):
+    _, levels, _ = world.remesh(world.scan(), vertices=0, levels=2, base="GIVEN", base_quads=100)
+    assert len(levels) == 3 and 90 <= len(levels[0].data.polygons) <= 110
 
 
 def test_nothing_selected_or_no_mesh_or_edit_mode(world):

@@ -57,7 +57,7 @@ def quality_lines(quality):
         ("Irregular vertices", _count(quality["irregular_vertices"])),
         ("Scaled Jacobian, 5 %", _plain(quality["scaled_jacobian_p05"])),
         ("Scaled Jacobian, median", _plain(quality["scaled_jacobian_p50"])),
-        ("Inverted quads", _count(quality["inverted"])),
+        ("Inverted quads", _percent(quality["inverted"])),
     ]
     return [(label, text) for label, text in lines if text]
 
@@ -72,3 +72,7 @@ def _fraction(value):
 
 def _plain(value):
     return "" if value is None else f"{value:.3f}"
+
+
+def _percent(value):
+    return "" if value is None else f"{value:.3%}"

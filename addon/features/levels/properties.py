@@ -46,9 +46,11 @@ def hierarchy_of(obj):
     """The hierarchy collection that an object belongs to or was the latest source of, or None."""
     if obj is None:
         return None
-    if obj.hybrid_mesh.hierarchy is not None:
+    # Asked first, because reading a property group that was never set leaves an empty one behind.
+    if obj.is_property_set("hybrid_mesh") and obj.hybrid_mesh.hierarchy is not None:
         return obj.hybrid_mesh.hierarchy
-    made = [collection for collection in bpy.data.collections if collection.hybrid_mesh.source == obj]
+    hierarchies = (collection for collection in bpy.data.collections if collection.is_property_set("hybrid_mesh"))
+    made = [collection for collection in hierarchies if collection.hybrid_mesh.source == obj]
     return max(made, key=lambda collection: collection.name, default=None)
 
 

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the samples of this folder anew: blender --background --factory-startup --python make_samples.py -- [SCANS]
+
+SCANS is a folder with bunny_holes.ply and buddha_10k.ply (see README.md); without it only the generated samples are made."""
+
+import os
+import struct
+import sys
+
+import bmesh
+import bpy
+import numpy
+from mathutils import Vector, noise
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def read_ply(path):
+    """Points and triangles of a binary little-endian PLY with float32 positions alone."""
+    with open(path, "rb") as file:
+        counts = {}
+        while (line := file.readline().strip()) != b"end_header":
+            words = line.split()
+            if words[0] == b"element":
+                counts[words[1].decode()] = int(words[2])
+        points = numpy.frombuffer(file.read(12 * counts["vertex"]), dtype="<f4").reshape(-1, 3)
+        faces = numpy.frombuffer(file.read(13 * counts["face"]), dtype=[("count", "u1"), ("corners", "<i4", 3)])["corners"]
+    return points, faces
+
+
+def write_ply(path, mesh):
+    """A triangle mesh as a binary little-endian PLY."""
+    with open(path, "wb") as file:
+        file.write(b"ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n" % len(mesh.vertices))
+        file.write(b"element face %d\nproperty list uchar int vertex_indices\nend_header\n" % len(mesh.polygons))
+        for vertex in mesh.vertices:
+            file.write(struct.pack("<3f", *vertex.co))
+        for polygon in mesh.polygons:
+            file.write(struct.pack("<B3i", 3, *polygon.vertices))
+
+
+def start():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.context.scene.world = bpy.data.worlds.new("World")
+
+
+def finish(name, active):
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(obj == active)
+    bpy.context.view_layer.objects.active = active
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(HERE, name + ".blend"), compress=True)
+    print(f"{name}.blend: {os.path.getsize(os.path.join(HERE, name + '.blend')) / 1e6:.2f} MB")
+
+
+def add(name, mesh, material="Clay", color=(0.55, 0.42, 0.33, 1)):
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(obj)
+    if material:
+        made = bpy.data.materials.get(material) or bpy.data.materials.new(material)
+        made.diffuse_color = color
+        mesh.materials.append(made)
+    return obj
+
+
+def scan(name, path, ratio, up):
+    """A scan, thinned out, two units high, standing on the ground. up: 1 where y points up in the file, -1 where it points down."""
+    points, faces = read_ply(path)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points.tolist(), [], faces.tolist())
+    obj = add(name, mesh)
+    bpy.context.view_layer.objects.active = obj
+    if ratio < 1:
+        modifier = obj.modifiers.new("Decimate", "DECIMATE")
+        modifier.ratio = ratio
+        modifier.use_collapse_triangulate = True
+        with bpy.context.temp_override(object=obj, active_object=obj):
+            bpy.ops.object.modifier_apply(modifier=modifier.name)
+    places = numpy.array([vertex.co for vertex in mesh.vertices])
+    places = places[:, [0, 2, 1]] * [1, -up, up]
+    low, high = places.min(0), places.max(0)
+    places = (places - [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]]) * (2 / (high[2] - low[2]))
+    mesh.vertices.foreach_set("co", places.astype(numpy.float32).ravel())
+    mesh.update()
+    return obj
+
+
+def knot(name, along=300, around=28):
+    """A trefoil knot whose skin is rough, as if scanned: genus 1, triangles."""
+    mesh = bpy.data.meshes.new(name)
+    t = numpy.linspace(0, 2 * numpy.pi, along, endpoint=False)
+
+    def curve(t):
+        return numpy.stack([numpy.sin(t) + 2 * numpy.sin(2 * t), numpy.cos(t) - 2 * numpy.cos(2 * t), -numpy.sin(3 * t)], axis=1)
+
+    centre = curve(t)
+    tangent = curve(t + 1e-4) - curve(t - 1e-4)
+    tangent /= numpy.linalg.norm(tangent, axis=1, keepdims=True)
+    radial = centre * [1, 1, 0]
+    side = numpy.cross(tangent, radial)
+    side /= numpy.linalg.norm(side, axis=1, keepdims=True)
+    other = numpy.cross(tangent, side)
+    points, faces = [], []
+    for i in range(along):
+        for j in range(around):
+            angle = 2 * numpy.pi * (j + 0.5 * (i % 2)) / around
+            direction = numpy.cos(angle) * side[i] + numpy.sin(angle) * other[i]
+            place = centre[i] + 0.62 * direction
+            rough = 0.10 * noise.noise(Vector(place * 1.3)) + 0.04 * noise.noise(Vector(place * 5))
+            points.append(tuple(place + rough * direction))
+    for i in range(along):
+        for j in range(around):
+            a, b = i * around + j, i * around + (j + 1) % around
+            c, d = (i + 1) % along * around + j, (i + 1) % along * around + (j + 1) % around
+            faces += [(a, c, b), (b, c, d)] if i % 2 == 0 else [(a, c, d), (a, d, b)]
+    mesh.from_pydata(points, [], faces)
+    mesh.update()
+    graph = bmesh.new()
+    graph.from_mesh(mesh)
+    bmesh.ops.recalc_face_normals(graph, faces=graph.faces)
+    graph.to_mesh(mesh)
+    graph.free()
+    return add(name, mesh)
+
+
+def prism():
+    """N-gons that are not convex, and a bevel."""
+    mesh = bpy.data.meshes.new("star prism")
+    graph = bmesh.new()
+    outline = [(numpy.cos(numpy.pi * k / 6) * r, numpy.sin(numpy.pi * k / 6) * r) for k, r in enumerate([1, 0.5] * 6)]
+    bottom = [graph.verts.new((x, y, 0)) for x, y in outline]
+    top = [graph.verts.new((x, y, 0.6)) for x, y in outline]
+    graph.faces.new(bottom[::-1])
+    graph.faces.new(top)
+    for i in range(12):
+        graph.faces.new((bottom[i], bottom[(i + 1) % 12], top[(i + 1) % 12], top[i]))
+    graph.to_mesh(mesh)
+    graph.free()
+    obj = add("Stern ★", mesh)
+    bevel = obj.modifiers.new("Bevel", "BEVEL")
+    bevel.width, bevel.segments = 0.05, 3
+    return obj
+
+
+def ring(name):
+    """A coarse cage of quads under a subdivision surface."""
+    bpy.ops.mesh.primitive_torus_add(major_segments=8, minor_segments=5, major_radius=1.2, minor_radius=0.5)
+    obj = bpy.context.object
+    obj.name = obj.data.name = name
+    obj.modifiers.new("Subdivision", "SUBSURF").levels = 3
+    return obj
+
+
+def transforms():
+    """Everything an object's transform and name can do to a remesher."""
+    parent = bpy.data.objects.new("turntable", None)
+    bpy.context.scene.collection.objects.link(parent)
+    parent.rotation_euler, parent.scale = (0, 0, 0.5), (1.5, 1, 1)
+    star = prism()
+    star.parent = parent
+    mirrored = knot("mirrored", 120, 16)
+    mirrored.location, mirrored.scale, mirrored.rotation_euler = (8, 0, 2), (-0.8, 1.4, 0.5), (0.4, 0.1, 0)
+    tall = ring("Größe 猫")
+    tall.location, tall.scale = (-5, 0, 1), (1, 1, 3)
+    return star
+
+
+def main():
+    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    if arguments:
+        start()
+        bunny = scan("bunny", os.path.join(arguments[0], "bunny_holes.ply"), 0.45, -1)
+        write_ply(os.path.join(HERE, "bunny.ply"), bunny.data)
+        finish("bunny", bunny)
+        start()
+        finish("buddha", scan("buddha", os.path.join(arguments[0], "buddha_10k.ply"), 1, 1))
+    start()
+    finish("knot", knot("knot"))
+    start()
+    finish("transforms", transforms())
+
+
+main()
