@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parameterization/cone_motion.h"
+
 namespace hybrid_mesh {
 namespace {
 
@@ -16,9 +18,8 @@ double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - 
 
 class MapSmoothing {
  public:
-  MapSmoothing(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options) : c_(charts), surface_(surface), options_(options) {
-    density_.theta = options.theta;
-  }
+  MapSmoothing(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options)
+      : c_(charts), surface_(surface), options_(options), density_{options.theta}, stars_(charts, density_) {}
 
   GlobalMapReport run(const Progress& progress) {
     progress.check();
@@ -30,7 +31,13 @@ class MapSmoothing {
     const std::vector<std::size_t> levels = collapse(target);
     progress(0.3);
     report_.coarse_vertices = c_.mesh.vertex_count;
-    newton(options_.newton_steps, progress.part(0.3, 0.6));
+    newton(options_.newton_steps, progress.part(0.3, 0.45));
+    for (int round = 0; round < options_.cone_rounds; ++round) {
+      const int moved = move_cones(c_, density_);
+      report_.cone_moves += moved;
+      if (moved == 0) break;
+      newton(2, progress.part(0.45, 0.6));
+    }
     report_.energy_coarse = mean_energy();
     refine(levels, progress.part(0.6, 1));
     report_.energy = mean_energy();
@@ -41,18 +48,12 @@ class MapSmoothing {
   static int next(int h) { return EditMesh::next(h); }
   static int prev(int h) { return EditMesh::prev(h); }
 
-  double triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const {
-    const Complex a = t.alpha[0] * p0 + t.alpha[1] * p1 + t.alpha[2] * p2;
-    const Complex b = std::conj(t.alpha[0]) * p0 + std::conj(t.alpha[1]) * p1 + std::conj(t.alpha[2]) * p2;
-    return t.area * density_.value(std::norm(a), std::norm(b));
-  }
   double mean_energy() const {
     double sum = 0, area = 0;
     for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f) {
       if (!c_.mesh.alive[f]) continue;
-      const FlatTriangle t = c_.flat(f);
-      sum += triangle_energy(t, c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2));
-      area += t.area;
+      sum += stars_.face_energy(f);
+      area += c_.flat(f).area;
     }
     return sum / area;
   }
@@ -118,75 +119,6 @@ class MapSmoothing {
     }
   }
 
-  // --- one vertex ----------------------------------------------------------------------------------------------------------------
-  struct Spoke {
-    Complex a, b;
-    FlatTriangle t;  // corners: the vertex, a, b
-  };
-  void gather(int v) {
-    star_.clear();
-    c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
-      star_.push_back({a, b, flatten(c_.points[v], c_.points[c_.mesh.to(g)], c_.points[c_.mesh.apex(g)], c_.scale)});
-    });
-  }
-  double star_energy(const Complex& p) const {
-    double sum = 0;
-    for (const Spoke& s : star_) {
-      if (!(cross(s.a - p, s.b - p) > 0)) return 1e300;
-      sum += triangle_energy(s.t, p, s.a, s.b);
-    }
-    return sum;
-  }
-  // One Newton step on v's position; returns the energy gained, relative to the star's energy.
-  double relax(int v, bool stretch_steps) {
-    gather(v);
-    Complex p = c_.uv[v];
-    double energy = 0;
-    Eigen::Vector2d gradient(0, 0);
-    Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
-    for (const Spoke& s : star_) {
-      const Complex &x = s.t.alpha[0], &y = s.t.alpha[1], &z = s.t.alpha[2];
-      const Complex a = x * p + y * s.a + z * s.b, b = std::conj(x) * p + std::conj(y) * s.a + std::conj(z) * s.b;
-      const Distortion::Derivatives e = density_(std::norm(a), std::norm(b));
-      energy += s.t.area * e.value;
-      const Complex g = 2 * e.s * a * std::conj(x) + 2 * e.t * b * x;
-      gradient += s.t.area * Eigen::Vector2d(g.real(), g.imag());
-      Eigen::Matrix<double, 4, 2> j;
-      j << x.real(), -x.imag(), x.imag(), x.real(), x.real(), x.imag(), -x.imag(), x.real();
-      hessian += s.t.area * (j.transpose() * projected_hessian(e, a, b) * j);
-    }
-    Eigen::Vector2d step(0, 0);
-    if (c_.kind[v] == ChartMesh::Kind::SlideU) {
-      step.x() = -gradient.x() / std::max(hessian(0, 0), 1e-300);
-    } else if (c_.kind[v] == ChartMesh::Kind::SlideV) {
-      step.y() = -gradient.y() / std::max(hessian(1, 1), 1e-300);
-    } else {
-      const double determinant = hessian.determinant(), trace = hessian.trace();
-      if (!(determinant > 1e-12 * trace * trace)) hessian += 1e-6 * trace * Eigen::Matrix2d::Identity();
-      step = -hessian.inverse() * gradient;
-    }
-    if (!step.allFinite()) return 0;
-    Complex d(step.x(), step.y());
-    double t = 1;
-    for (int tries = 0; tries < 10; ++tries, t *= 0.5) {
-      const double fresh = star_energy(p + t * d);
-      if (fresh < energy) {
-        Complex best = p + t * d;
-        double least = fresh;
-        while (stretch_steps && t < 64) {
-          t *= 2;
-          const double further = star_energy(p + t * d);
-          if (!(further < least)) break;
-          least = further;
-          best = p + t * d;
-        }
-        c_.uv[v] = best;
-        return (energy - least) / energy;
-      }
-    }
-    return 0;
-  }
-
   // Badly squeezed triangles first: a global line search would stall on them.
   void relax_bad_stars(double least, int sweeps, const Progress& progress) {
     std::vector<int> around;
@@ -209,7 +141,7 @@ class MapSmoothing {
         chosen.swap(grown);
       }
       for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-        if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) relax(v, true);
+        if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) stars_.relax(v, true);
       progress((sweep + 1.0) / sweeps);
     }
   }
@@ -277,9 +209,9 @@ class MapSmoothing {
     for (int i = 0; i < count; ++i) {
       progress.check();
       if (i % 2 == 0)
-        for (const int v : vertices) relax(v, false);
+        for (const int v : vertices) stars_.relax(v, false);
       else
-        for (std::size_t k = vertices.size(); k-- > 0;) relax(vertices[k], false);
+        for (std::size_t k = vertices.size(); k-- > 0;) stars_.relax(vertices[k], false);
     }
   }
 
@@ -306,11 +238,12 @@ class MapSmoothing {
         }
         fresh.push_back(v);
       }
-      for (const int v : fresh) relax(v, false);
+      for (const int v : fresh) stars_.relax(v, false);
       // A full sweep whenever the mesh has grown by half, and at the end.
       if (c_.mesh.vertex_count > 1.5 * swept || level == 0) {
         sweep(options_.sweeps, movable_vertices(), progress);
         swept = c_.mesh.vertex_count;
+        for (int round = 0; round < 2; ++round) report_.cone_moves += move_cones(c_, density_);
       }
       progress(1 - static_cast<double>(level) / levels.size());
     }
@@ -327,50 +260,8 @@ class MapSmoothing {
           if (std::find(region.begin(), region.end(), x) == region.end()) region.push_back(x);
       }
     }
-    for (double eps = 1e-1; eps > 1e-7; eps *= 0.3) {
-      for (int i = 0; i < 4; ++i)
-        for (const int w : region)
-          if (c_.movable(w)) relax_regularized(w, eps);
-      bool good = c_.angle_at(v) < 9;
-      for (const int w : region) {
-        int h = c_.mesh.out[w];
-        do {
-          if (!(c_.determinant(h / 3) > 0)) good = false;
-          h = c_.mesh.ccw(h);
-        } while (good && h >= 0 && h != c_.mesh.out[w]);
-      }
-      if (good) return;
-    }
+    if (stars_.unfold(region)) return;
     throw Error(ErrorCode::Internal, "the map could not be carried to a finer mesh");
-  }
-
-  // The energy with D replaced by (D + sqrt(eps^2 + D^2)) / 2, finite for folded triangles; minimised by pattern search.
-  double regularized_energy(const Complex& p, double eps) const {
-    double sum = 0;
-    for (const Spoke& s : star_) {
-      const Complex a = s.t.alpha[0] * p + s.t.alpha[1] * s.a + s.t.alpha[2] * s.b;
-      const Complex b = std::conj(s.t.alpha[0]) * p + std::conj(s.t.alpha[1]) * s.a + std::conj(s.t.alpha[2]) * s.b;
-      const double d = std::norm(a) - std::norm(b), chi = 0.5 * (d + std::sqrt(eps * eps + d * d));
-      sum += s.t.area * ((std::norm(a) + std::norm(b)) / chi);
-    }
-    return sum;
-  }
-  void relax_regularized(int v, double eps) {
-    gather(v);
-    double size = 0;
-    for (const Spoke& s : star_) size = std::max(size, std::abs(s.a - c_.uv[v]));
-    Complex p = c_.uv[v];
-    double energy = regularized_energy(p, eps);
-    const bool slide_u = c_.kind[v] == ChartMesh::Kind::SlideU, slide_v = c_.kind[v] == ChartMesh::Kind::SlideV;
-    for (double r = 0.5 * size; r > 1e-3 * size; r *= 0.5)
-      for (int k = 0; k < 8; ++k) {
-        if ((slide_u && k % 4 != 0) || (slide_v && k % 4 != 2)) continue;
-        static const std::array<Complex, 8> ways{Complex(1, 0), Complex(.7, .7), Complex(0, 1), Complex(-.7, .7), Complex(-1, 0), Complex(-.7, -.7), Complex(0, -1), Complex(.7, -.7)};
-        const Complex q = p + r * ways[k];
-        const double e = regularized_energy(q, eps);
-        if (e < energy) energy = e, p = q;
-      }
-    c_.uv[v] = p;
   }
 
   // --- the coarse mesh -----------------------------------------------------------------------------------------------------------
@@ -395,7 +286,7 @@ class MapSmoothing {
     std::vector<Eigen::Triplet<double>> entries;
     const auto energy_now = [&] {
       double sum = 0;
-      for (std::size_t i = 0; i < faces.size(); ++i) sum += triangle_energy(flat[i], c_.at(3 * faces[i]), c_.at(3 * faces[i] + 1), c_.at(3 * faces[i] + 2));
+      for (std::size_t i = 0; i < faces.size(); ++i) sum += stars_.triangle_energy(flat[i], c_.at(3 * faces[i]), c_.at(3 * faces[i] + 1), c_.at(3 * faces[i] + 2));
       return sum;
     };
     for (int step = 0; step < steps; ++step) {
@@ -500,9 +391,9 @@ class MapSmoothing {
   const PatchedSurface& surface_;
   const GlobalMapOptions& options_;
   Distortion density_;
+  StarRelaxation stars_;
   GlobalMapReport report_;
   std::vector<int> log_;
-  std::vector<Spoke> star_;
 };
 
 }  // namespace

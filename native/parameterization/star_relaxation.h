@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "parameterization/chart_mesh.h"
+
+namespace hybrid_mesh {
+
+// Moves single vertices of a chart mesh to lower the map's distortion, their neighbours held.
+class StarRelaxation {
+ public:
+  StarRelaxation(ChartMesh& charts, const Distortion& density) : c_(charts), density_(density) {}
+
+  double triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const;
+  double face_energy(int f) const { return triangle_energy(c_.flat(f), c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2)); }
+
+  // One Newton step on v's position, shortened until the energy falls and no triangle folds; with `lengthen` doubled as long as that gains.
+  void relax(int v, bool lengthen);
+  // The same for an energy that is finite for folded triangles: their determinant D is replaced by (D + sqrt(eps^2 + D^2)) / 2.
+  void relax_folded(int v, double eps);
+  // Every face counter-clockwise and no vertex but a cone wound around more than once.
+  bool is_unfolded(const std::vector<int>& vertices) const;
+  // Unfolds the stars of the given vertices by moving those of them that can move. Returns whether it did.
+  bool unfold(const std::vector<int>& vertices);
+
+ private:
+  struct Spoke {
+    Complex a, b;
+    FlatTriangle t;  // corners: the vertex, a, b
+  };
+  struct Quadratic {
+    double energy = 0;
+    Eigen::Vector2d gradient{0, 0};
+    Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
+  };
+  void gather(int v);
+  template <class Density>
+  Quadratic expand(const Complex& p, const Density& density) const;
+  Complex newton_step(int v, Quadratic& q) const;
+  double star_energy(const Complex& p) const;
+
+  ChartMesh& c_;
+  Distortion density_;
+  std::vector<Spoke> star_;
+};
+
+}  // namespace hybrid_mesh
