@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "remesh/remesh.h"
+#include "shapes.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -139,6 +143,78 @@ TEST(Job, ManyWatchersOfManyJobs) {
   for (std::thread& watcher : watchers) watcher.join();
   for (int i = 0; i < 4; ++i) jobs[i]->wait();
   for (int i = 4; i < 8; ++i) EXPECT_FALSE(jobs[i]->done());
+}
+
+// A flat sheet of squares, bent.
+PolygonSoup bent_sheet(int n) {
+  PolygonSoup soup = grid(n, n);
+  for (Vec3& p : soup.points) p.z() = 0.1 * n * std::sin(3 * p.x() / n) * std::cos(4 * p.y() / n);
+  return soup;
+}
+
+// One thread: the thread sanitizer does not see how an uninstrumented TBB hands work from one to another.
+RemeshOptions single_threaded(std::int64_t vertices) {
+  RemeshOptions options;
+  options.vertices = vertices;
+  options.threads = 1;
+  return options;
+}
+
+TEST(JobRemesh, IsWatchedUntilItIsDone) {
+  std::int64_t vertices = 0;
+  Job job([&vertices, input = bent_sheet(16)](Context& context) {
+    vertices = static_cast<std::int64_t>(remesh(input, single_threaded(600), context).final_mesh.points.size());
+  });
+  double previous = 0;
+  while (!job.wait_for(milliseconds(1))) {
+    const double progress = job.progress();
+    ASSERT_GE(progress, previous);
+    ASSERT_LT(progress, 1.0);
+    previous = progress;
+  }
+  ASSERT_NO_THROW(job.rethrow());
+  EXPECT_EQ(job.progress(), 1.0);
+  EXPECT_GT(previous, 0.0);
+  EXPECT_GT(vertices, 0);
+  EXPECT_LE(vertices, 600);
+}
+
+TEST(JobRemesh, CanBeCancelledAtAnyTime) {
+  const PolygonSoup input = bent_sheet(24);
+  int cancelled = 0;
+  for (const double at : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
+    Job job([&input](Context& context) { remesh(input, single_threaded(1500), context); });
+    while (job.progress() < at && !job.wait_for(milliseconds(0))) {
+    }
+    job.cancel();
+    try {
+      job.rethrow();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+      ++cancelled;
+    }
+  }
+  EXPECT_GT(cancelled, 0);
+}
+
+TEST(JobRemesh, JobsDoNotDisturbEachOther) {
+  const auto points_of = [](int n) {
+    auto points = std::make_shared<std::vector<Vec3>>();
+    return std::pair(points, [points, input = bent_sheet(n)](Context& context) { *points = remesh(input, single_threaded(600), context).final_mesh.points; });
+  };
+  std::vector<std::vector<Vec3>> alone;
+  for (const int n : {12, 16}) {
+    const auto [points, work] = points_of(n);
+    Job(work).rethrow();
+    alone.push_back(*points);
+  }
+  const auto [first, first_work] = points_of(12);
+  const auto [second, second_work] = points_of(16);
+  Job a(first_work), b(second_work);
+  a.rethrow();
+  b.rethrow();
+  EXPECT_EQ(*first, alone[0]);
+  EXPECT_EQ(*second, alone[1]);
 }
 
 }  // namespace
