@@ -62,8 +62,8 @@ def add(name, mesh, material="Clay", color=(0.55, 0.42, 0.33, 1)):
     return obj
 
 
-def scan(name, path, ratio, up):
-    """A scan, thinned out, two units high, standing on the ground. up: 1 where y points up in the file, -1 where it points down."""
+def scan(name, path, ratio, axes):
+    """A scan, thinned out, two units high, standing on the ground. axes: rows of the rotation that sets it upright."""
     points, faces = read_ply(path)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(points.tolist(), [], faces.tolist())
@@ -76,7 +76,7 @@ def scan(name, path, ratio, up):
         with bpy.context.temp_override(object=obj, active_object=obj):
             bpy.ops.object.modifier_apply(modifier=modifier.name)
     places = numpy.array([vertex.co for vertex in mesh.vertices])
-    places = places[:, [0, 2, 1]] * [1, -up, up]
+    places = places @ numpy.array(axes, dtype=float).T
     low, high = places.min(0), places.max(0)
     places = (places - [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]]) * (2 / (high[2] - low[2]))
     mesh.vertices.foreach_set("co", places.astype(numpy.float32).ravel())
@@ -168,11 +168,11 @@ def main():
     arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     if arguments:
         start()
-        bunny = scan("bunny", os.path.join(arguments[0], "bunny_holes.ply"), 0.45, -1)
+        bunny = scan("bunny", os.path.join(arguments[0], "bunny_holes.ply"), 0.45, [[1, 0, 0], [0, 0, 1], [0, -1, 0]])
         write_ply(os.path.join(HERE, "bunny.ply"), bunny.data)
         finish("bunny", bunny)
         start()
-        finish("buddha", scan("buddha", os.path.join(arguments[0], "buddha_10k.ply"), 1, 1))
+        finish("buddha", scan("buddha", os.path.join(arguments[0], "buddha_10k.ply"), 1, numpy.eye(3)))
     start()
     finish("knot", knot("knot"))
     start()

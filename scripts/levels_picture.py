@@ -12,7 +12,7 @@ import bpy
 import numpy
 
 TILE = 480  # pixels
-SAMPLES = 40
+SAMPLES = 48
 GAP = 1.12  # of the largest extent, between two middles
 TURN = 0.3  # about the vertical, radians
 LINE = 0.0042  # width of the lines, of the object's height
@@ -20,6 +20,7 @@ PASTELS = numpy.array([
     [0.80, 0.60, 0.52], [0.86, 0.74, 0.54], [0.66, 0.76, 0.58], [0.54, 0.74, 0.72], [0.56, 0.66, 0.82], [0.72, 0.62, 0.80], [0.84, 0.62, 0.70],
 ])  # fmt: skip
 GREY = numpy.array([0.72, 0.72, 0.70])
+CLAY = numpy.array([0.56, 0.47, 0.40])
 
 
 def corner_distances(points, corners, offsets, height):
@@ -43,8 +44,8 @@ def corner_distances(points, corners, offsets, height):
     return distances
 
 
-def display_mesh(name, mesh, height):
-    """A copy of a mesh with what the material needs: distances to edges and a colour a patch."""
+def display_mesh(name, mesh, height, lines=True):
+    """A copy of a mesh with what the material needs: distances to edges and a colour a patch, or neither."""
     copy = bpy.data.meshes.new(name)
     points = numpy.empty(3 * len(mesh.vertices), dtype=numpy.float32)
     mesh.vertices.foreach_get("co", points)
@@ -54,15 +55,16 @@ def display_mesh(name, mesh, height):
     mesh.polygons.foreach_get("loop_total", totals)
     offsets = numpy.concatenate([[0], numpy.cumsum(totals)])
     patch = numpy.zeros(len(mesh.polygons), dtype=numpy.int32)
-    if "patch" in mesh.attributes:
+    if lines and "patch" in mesh.attributes:
         mesh.attributes["patch"].data.foreach_get("value", patch)
         colors = PASTELS[(patch * 2654435761 % 4294967296) // 7 % len(PASTELS)]
     else:
-        colors = numpy.repeat(GREY[None], len(patch), axis=0)
+        colors = numpy.repeat((GREY if lines else CLAY)[None], len(patch), axis=0)
     copy.from_pydata(points.reshape(-1, 3).tolist(), [], [corners[a:b].tolist() for a, b in zip(offsets[:-1], offsets[1:])])
     copy.polygons.foreach_set("use_smooth", [True] * len(copy.polygons))
+    edges = corner_distances(points.reshape(-1, 3).astype(float), corners, offsets, height)
     for label, values in (
-        ("edges", corner_distances(points.reshape(-1, 3).astype(float), corners, offsets, height)),
+        ("edges", edges if lines else numpy.full_like(edges, 1e3)),
         ("tint", numpy.repeat(numpy.concatenate([colors, numpy.ones((len(colors), 1))], axis=1), totals, axis=0)),
     ):
         attribute = copy.attributes.new(label, "FLOAT_COLOR", "CORNER")
@@ -126,7 +128,7 @@ def label(text, place, size, ink):
 
 
 def build(parts):
-    """parts: (label, mesh). Returns (collection, columns, rows, tile size)."""
+    """parts: (label, mesh, whether its edges and patches are shown). Returns (collection, columns, rows, tile size)."""
     collection = bpy.data.collections.new("Side by side")
     bpy.context.scene.collection.children.link(collection)
     points = numpy.empty(3 * len(parts[0][1].vertices), dtype=numpy.float32)
@@ -140,10 +142,10 @@ def build(parts):
     rows = -(-count // columns)
     quads, ink = material(), plain_material("Ink", (0.03, 0.035, 0.05, 1))
     step = GAP * extent
-    for number, (text, mesh) in enumerate(parts):
+    for number, (text, mesh, lines) in enumerate(parts):
         column, row = number % columns, number // columns
         x, z = (column - (columns - 1) / 2) * step, ((rows - 1) / 2 - row) * 1.14 * step
-        copy = display_mesh(text, mesh, extent)
+        copy = display_mesh(text, mesh, extent, lines)
         copy.materials.append(quads)
         obj = bpy.data.objects.new(text, copy)
         obj.rotation_euler = (0, 0, TURN)
@@ -158,11 +160,17 @@ def light_and_camera(columns, rows, step):
     world = scene.world or bpy.data.worlds.new("World")
     scene.world = world
     world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs[0].default_value = (0.90, 0.91, 0.93, 1)
-    world.node_tree.nodes["Background"].inputs[1].default_value = 0.6
-    for name, strength, rotation in (("Key", 1.5, (0.9, 0.15, 0.5)), ("Fill", 0.5, (1.1, 0, -0.9))):
+    # Paper white behind, softer light around.
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    background = nodes["Background"]
+    background.inputs[0].default_value = (0.90, 0.91, 0.93, 1)
+    seen, mix = nodes.new("ShaderNodeLightPath"), nodes.new("ShaderNodeMapRange")
+    mix.inputs["To Min"].default_value, mix.inputs["To Max"].default_value = 0.42, 1.05
+    links.new(seen.outputs["Is Camera Ray"], mix.inputs["Value"])
+    links.new(mix.outputs[0], background.inputs[1])
+    for name, strength, rotation in (("Key", 2.3, (0.9, 0.15, 0.5)), ("Fill", 0.5, (1.1, 0, -0.9))):
         sun = bpy.data.lights.new(name, "SUN")
-        sun.energy, sun.angle = strength, 0.15
+        sun.energy, sun.angle = strength, 0.03
         obj = bpy.data.objects.new(name, sun)
         obj.rotation_euler = rotation
         scene.collection.objects.link(obj)
@@ -205,8 +213,10 @@ def main():
     collection.hybrid_mesh.source = source
     levels = [obj for obj in collection.objects if obj.hybrid_mesh.role == "LEVEL"]
     levels.sort(key=lambda obj: len(obj.data.polygons))
-    parts = [(f"scan: {len(source.data.vertices):,} vertices", source.data)]
-    parts += [(f"{obj.hybrid_mesh.level}: {len(obj.data.polygons):,} quads", obj.data) for obj in levels]
+    parts = [(f"scan: {len(source.data.vertices):,} vertices", source.data, True)]
+    parts += [(f"{obj.hybrid_mesh.level}: {len(obj.data.polygons):,} quads", obj.data, True) for obj in levels]
+    if len(parts) > 4 and len(parts) % 2:
+        parts.append((f"{levels[-1].hybrid_mesh.level}, shaded", levels[-1].data, False))
     side_by_side, columns, rows, step = build(parts)
     light_and_camera(columns, rows, step)
     preview.hide_render = source.hide_render = True
