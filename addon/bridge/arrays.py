@@ -44,8 +44,8 @@ def reversed_corners(offsets):
     return turned - numpy.arange(offsets[-1], dtype=offsets.dtype)
 
 
-def closest_weights(points, triangles):
-    """Barycentric weights of the points of (n, 3, 3) triangles that are nearest to (n, 3) points; within the triangle, up to rounding."""
+def closest_weights(points, triangles, inside=True):
+    """Barycentric weights in (n, 3, 3) triangles of the points nearest to (n, 3) points: of the triangle, or of its plane."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     ab, ac, ap = b - a, c - a, points - a
     d00, d01, d11 = (ab * ab).sum(1), (ab * ac).sum(1), (ac * ac).sum(1)
@@ -56,6 +56,80 @@ def closest_weights(points, triangles):
     w = (d00 * d21 - d01 * d20) / safe
     weights = numpy.stack([1 - v - w, v, w], axis=1)
     weights[determinant <= 0] = 1 / 3
+    if not inside:
+        return weights
     # Clamping and rescaling is not the exact nearest point outside, but never leaves the triangle.
     weights = numpy.clip(weights, 0, None)
     return weights / weights.sum(1, keepdims=True)
+
+
+def triangle_neighbours(triangles):
+    """(n, 3): the triangle across the edge opposite corner i, -1 where there is none or more than one."""
+    triangles = numpy.asarray(triangles, dtype=numpy.int64)
+    ends = numpy.stack([triangles[:, [1, 2]], triangles[:, [2, 0]], triangles[:, [0, 1]]], axis=1).reshape(-1, 2)
+    keys = ends.min(1) * (triangles.max(initial=0) + 1) + ends.max(1)
+    order = numpy.argsort(keys, kind="stable")
+    same = keys[order][1:] == keys[order][:-1]
+    begins = numpy.concatenate([[True], ~same])
+    pair = numpy.nonzero(begins[:-1] & same & numpy.concatenate([~same[1:], [True]]))[0]
+    across = numpy.full(len(keys), -1)
+    across[order[pair]], across[order[pair + 1]] = order[pair + 1] // 3, order[pair] // 3
+    return across.reshape(-1, 3)
+
+
+def walk(points, triangle, mesh_points, triangles, neighbours, steps=32):
+    """From a triangle near each point to the one that the point lies over: each step crosses the edge that the point is farthest beyond."""
+    triangle = numpy.array(triangle)
+    moving = numpy.arange(len(points))
+    came_from = numpy.full(len(points), -1)
+    for _ in range(steps):
+        weights = closest_weights(points[moving], mesh_points[triangles[triangle[moving]]], inside=False)
+        side = weights.argmin(1)
+        ahead = neighbours[triangle[moving], side]
+        go = (weights[numpy.arange(len(moving)), side] < -1e-9) & (ahead >= 0) & (ahead != came_from[moving])
+        moving, ahead = moving[go], ahead[go]
+        if not len(moving):
+            break
+        came_from[moving] = triangle[moving]
+        triangle[moving] = ahead
+    return triangle
+
+
+def matching_faces(points, faces, other_points, other_faces):
+    """For each triangle the number of the other mesh's triangle with the same three places as corners, -1 where there is none."""
+    faces, other_faces = numpy.asarray(faces), numpy.asarray(other_faces)
+    if faces.shape == other_faces.shape and numpy.array_equal(numpy.asarray(points)[faces], numpy.asarray(other_points)[other_faces]):
+        return numpy.arange(len(faces))
+    places = numpy.unique(numpy.concatenate([points, other_points]), axis=0, return_inverse=True)[1].ravel()
+    keys = numpy.concatenate([numpy.sort(places[faces], axis=1), numpy.sort(places[len(points) :][other_faces], axis=1)])
+    names = numpy.unique(keys, axis=0, return_inverse=True)[1].ravel()
+    first = numpy.full(names.max(initial=-1) + 1, -1)
+    first[names[len(faces) :][::-1]] = numpy.arange(len(other_faces))[::-1]
+    return first[names[: len(faces)]]
+
+
+def surface_islands(corner_vertices, corner_values):
+    """The island of each triangle: triangles hang together where they share a vertex with the same value (as of a UV map).
+
+    corner_vertices (3 n,), corner_values (3 n, k).
+    """
+    values = numpy.unique(corner_values, axis=0, return_inverse=True)[1].ravel()
+    pairs = numpy.stack([numpy.asarray(corner_vertices, dtype=numpy.int64), values], axis=1)
+    corners = numpy.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
+    label = numpy.arange(corners.max(initial=-1) + 1)
+    while True:
+        least = label[corners].min(1)
+        lower = label.copy()
+        numpy.minimum.at(lower, corners.ravel(), numpy.repeat(least, 3))
+        # Labels of labels: the number of rounds grows with the logarithm of the distance.
+        while not numpy.array_equal(lower, lower[lower]):
+            lower = lower[lower]
+        numpy.minimum.at(lower, label, lower.copy())
+        if numpy.array_equal(lower, label):
+            return label[corners[:, 0]]
+        label = lower
+
+
+def majority(values):
+    """For each row the column of the value that is most frequent in it; the first of several."""
+    return (values[:, :, None] == values[:, None, :]).sum(2).argmax(1)

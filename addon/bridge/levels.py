@@ -28,7 +28,7 @@ def build(name, levels, matrix, scene, place=None, source=None, carry=None):
     """Makes the objects of a hierarchy in a new collection of the scene.
 
     levels: (level name, MeshDict in world space) from coarse to fine; matrix: object to world, as the objects will have it;
-    place(obj): puts an object where the source stands; carry(mesh, MeshDict): adds what the source's surface carries.
+    place(obj): puts an object where the source stands; carry(obj, MeshDict): adds what the source's surface carries.
     On an error nothing is left behind.
     """
     made = []
@@ -44,10 +44,10 @@ def build(name, levels, matrix, scene, place=None, source=None, carry=None):
             if source is not None:
                 for slot in source.material_slots:
                     mesh.materials.append(slot.material)
-            if carry is not None:
-                carry(mesh, arrays)
             obj = _new_object(mesh.name, mesh, collection, place)
             made.append(obj)
+            if carry is not None:
+                carry(obj, arrays)
             modifier = obj.modifiers.new(SUBDIVISION_MODIFIER, "SUBSURF")
             modifier.levels = 1
             modifier.render_levels = 1

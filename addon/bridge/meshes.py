@@ -2,6 +2,7 @@
 """Mesh objects as arrays in world space, and arrays as meshes in object space."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy
@@ -24,14 +25,14 @@ class Source:
     matrix: numpy.ndarray  # object to world
     triangle_polygons: numpy.ndarray  # the polygon of each triangle
     triangle_loops: numpy.ndarray  # (n, 3) the corners of each triangle, in its order in `mesh`
-    polygon_materials: numpy.ndarray  # the material index of each polygon
+    carried: Any  # transfer.Carried: what the surface carries
 
 
-def read_source(obj, depsgraph):
+def read_source(obj, depsgraph, collect=None):
     """The evaluated mesh of a mesh object (modifiers applied) in world space, faces counter-clockwise seen from outside there.
 
     N-gons are cut as Blender shows them, so that source triangle t of a result is triangle t of the Source.
-    Raises SourceError or MatrixError.
+    collect(obj, mesh) reads what the surface carries, if that is wanted. Raises SourceError or MatrixError.
     """
     matrix = world_matrix(obj.matrix_world)
     evaluated = obj.evaluated_get(depsgraph)
@@ -41,12 +42,12 @@ def read_source(obj, depsgraph):
     try:
         if not mesh.polygons:
             raise SourceError("it has no faces")
-        points = _get(mesh.vertices, "co", 3).astype(numpy.float64)
-        corners = _get(mesh.loops, "vertex_index", 1, numpy.int32)
+        points = values_of(mesh.vertices, "co", 3).astype(numpy.float64)
+        corners = values_of(mesh.loops, "vertex_index", 1, numpy.int32)
         mesh.calc_loop_triangles()
-        loops = _get(mesh.loop_triangles, "loops", 3, numpy.int32)
-        polygons = _get(mesh.loop_triangles, "polygon_index", 1, numpy.int32)
-        materials = _get(mesh.polygons, "material_index", 1, numpy.int32)
+        loops = values_of(mesh.loop_triangles, "loops", 3, numpy.int32)
+        polygons = values_of(mesh.loop_triangles, "polygon_index", 1, numpy.int32)
+        carried = collect(obj, mesh) if collect else None
     finally:
         evaluated.to_mesh_clear()
     if mirrors(matrix):
@@ -56,7 +57,7 @@ def read_source(obj, depsgraph):
     if not numpy.isfinite(points).all():
         raise SourceError("it has vertices at places that are not finite")
     offsets = numpy.arange(0, 3 * len(loops) + 1, 3, dtype=numpy.int64)
-    return Source(MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, materials)
+    return Source(MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, carried)
 
 
 def new_mesh(name, made, matrix):
@@ -64,7 +65,7 @@ def new_mesh(name, made, matrix):
     points = transformed(made["points"], numpy.linalg.inv(matrix))
     offsets = numpy.asarray(made["offsets"], dtype=numpy.int64)
     indices = numpy.asarray(made["indices"], dtype=numpy.int32)
-    corners = reversed_corners(offsets) if mirrors(matrix) else slice(None)
+    corners = corner_order(offsets, matrix)
     mesh = bpy.data.meshes.new(name)
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set("co", points.astype(numpy.float32).ravel())
@@ -80,9 +81,27 @@ def new_mesh(name, made, matrix):
         bpy.data.meshes.remove(mesh)
         raise RuntimeError(f"{name} is not a valid mesh")
     if "uv" in made:
-        collection, field = compat.uv_values(mesh.uv_layers.new(name=PATCH_UV))
-        collection.foreach_set(field, numpy.asarray(made["uv"], dtype=numpy.float32)[corners].ravel())
+        add_uv(mesh, PATCH_UV, numpy.asarray(made["uv"])[corners])
     return mesh
+
+
+def corner_order(offsets, matrix):
+    """Which corner of a MeshDict is which of the mesh that new_mesh makes of it: faces are turned over where the object mirrors."""
+    return reversed_corners(offsets) if mirrors(matrix) else slice(None)
+
+
+def add_uv(mesh, name, values):
+    """Adds a UV map: one row a corner."""
+    layer = mesh.uv_layers.new(name=name)
+    if layer is None:
+        return  # Blender takes eight.
+    collection, field = compat.uv_values(layer)
+    collection.foreach_set(field, numpy.ascontiguousarray(values, dtype=numpy.float32).ravel())
+
+
+def set_materials(mesh, indices):
+    """Sets the material index of every polygon."""
+    mesh.polygons.foreach_set("material_index", numpy.ascontiguousarray(indices, dtype=numpy.int32))
 
 
 def set_attribute(mesh, name, kind, domain, values):
@@ -101,18 +120,18 @@ def get_attribute(mesh, name):
     if attribute is None or attribute.data_type not in _ATTRIBUTES:
         return None
     field, width, dtype = _ATTRIBUTES[attribute.data_type]
-    values = _get(attribute.data, field, width, dtype)
+    values = values_of(attribute.data, field, width, dtype)
     return values
 
 
 def mesh_arrays(mesh):
     """A mesh data-block as it stands, polygons and all."""
-    starts = _get(mesh.polygons, "loop_start", 1, numpy.int32).astype(numpy.int64)
-    totals = _get(mesh.polygons, "loop_total", 1, numpy.int32).astype(numpy.int64)
-    corners = _get(mesh.loops, "vertex_index", 1, numpy.int32)
+    starts = values_of(mesh.polygons, "loop_start", 1, numpy.int32).astype(numpy.int64)
+    totals = values_of(mesh.polygons, "loop_total", 1, numpy.int32).astype(numpy.int64)
+    corners = values_of(mesh.loops, "vertex_index", 1, numpy.int32)
     offsets = numpy.concatenate([[0], numpy.cumsum(totals)]).astype(numpy.int64)
     order = numpy.repeat(starts - offsets[:-1], totals) + numpy.arange(offsets[-1])
-    return MeshArrays(_get(mesh.vertices, "co", 3).astype(numpy.float64), offsets, corners[order])
+    return MeshArrays(values_of(mesh.vertices, "co", 3).astype(numpy.float64), offsets, corners[order])
 
 
 _ATTRIBUTES = {
@@ -126,7 +145,8 @@ _ATTRIBUTES = {
 }
 
 
-def _get(collection, field, width, dtype=numpy.float32):
+def values_of(collection, field, width, dtype=numpy.float32):
+    """A property of every element of a collection as an array, a row an element where it has several numbers."""
     values = numpy.empty(len(collection) * width, dtype=dtype)
     collection.foreach_get(field, values)
     return values.reshape(-1, width) if width > 1 else values

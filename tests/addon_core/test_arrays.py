@@ -49,3 +49,49 @@ def test_stretch_colours_are_finite_whatever_the_stretch():
     even = stretch_colors([1.0])[0, :3]
     assert even.max() - even.min() < 0.05
     assert stretch_colors([4.0])[0, 0] > stretch_colors([4.0])[0, 2] and stretch_colors([0.25])[0, 2] > stretch_colors([0.25])[0, 0]
+
+
+def test_faces_are_found_by_their_places():
+    points = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+    faces = numpy.array([[0, 1, 2], [2, 1, 3]])
+    assert arrays.matching_faces(points, faces, points, faces).tolist() == [0, 1]
+    # Points in another order and one of them twice, a face turned round, one that is not there.
+    other = numpy.array([[1.0, 1, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]])
+    assert arrays.matching_faces(other, numpy.array([[0, 2, 3], [0, 1, 4]]), points, faces).tolist() == [1, -1]
+
+
+def test_islands_end_at_seams():
+    # A strip of six triangles; the value jumps after the third.
+    strip = numpy.array([[i, i + 1, i + 2] for i in range(6)])
+    values = numpy.array([[vertex + (100 if face >= 3 else 0), 0] for face, triangle in enumerate(strip) for vertex in triangle], dtype=float)
+    islands = arrays.surface_islands(strip.ravel(), values)
+    assert len(set(islands[:3])) == len(set(islands[3:])) == 1 and islands[0] != islands[3]
+    long = numpy.array([[i, i + 1, i + 2] for i in range(3000)])
+    assert len(set(arrays.surface_islands(long.ravel(), numpy.zeros((9000, 2))))) == 1
+    shuffled = numpy.random.default_rng(3).permutation(3002)[long]
+    assert len(set(arrays.surface_islands(shuffled.ravel(), numpy.zeros((9000, 2))))) == 1
+
+
+def test_majority():
+    assert arrays.majority(numpy.array([[1, 2, 2, 3], [5, 5, 1, 1], [4, 4, 4, 4]])).tolist() == [1, 0, 0]
+
+
+def test_neighbours_and_walking():
+    size = 12
+    points = numpy.array([[x, y, 0.0] for y in range(size) for x in range(size)])
+    corner = numpy.array([x + size * y for y in range(size - 1) for x in range(size - 1)])
+    triangles = numpy.concatenate([numpy.stack([corner, corner + 1, corner + size], 1), numpy.stack([corner + 1, corner + size + 1, corner + size], 1)])
+    neighbours = arrays.triangle_neighbours(triangles)
+    for triangle, across in enumerate(neighbours):
+        for corner, other in enumerate(across):
+            if other >= 0:
+                assert triangle in neighbours[other]
+                assert len(set(triangles[triangle]) & set(triangles[other])) == 2 and triangles[triangle][corner] not in triangles[other]
+    assert (neighbours < 0).sum() == 4 * (size - 1)
+    random = numpy.random.default_rng(5)
+    places = numpy.concatenate([random.random((50, 2)) * (size - 1), random.random((50, 1))], axis=1)
+    found = arrays.walk(places, random.integers(len(triangles), size=50), points, triangles, neighbours, 100)
+    weights = arrays.closest_weights(places, points[triangles[found]], inside=False)
+    assert weights.min() > -1e-6
+    # An edge of three triangles is a place to stop.
+    assert (arrays.triangle_neighbours(numpy.array([[0, 1, 2], [1, 0, 3], [0, 1, 4]])) == -1).all()

@@ -45,7 +45,7 @@ class HYBRID_MESH_OT_remesh(RemeshProperties, NativeJobOperator):
         tasks = []
         for obj in sorted((obj for obj in context.selected_objects if obj.type == "MESH"), key=lambda obj: obj.name):
             try:
-                source = meshes.read_source(obj, graph)
+                source = meshes.read_source(obj, graph, transfer.collect)
             except (meshes.SourceError, arrays.MatrixError) as error:
                 tasks.append(Task(obj.name, _refusal(error)))
                 continue
@@ -100,7 +100,7 @@ def _refusal(error):
 def _build(context, obj, result, source, settings):
     hierarchy = result.hierarchy
     parts = [(name, hierarchy.level(name)) for name in hierarchy.level_names]
-    carry = transfer.carrier(obj, context.evaluated_depsgraph_get(), source)
+    carry = transfer.carrier(source, result.repaired())
     built = levels.build(obj.name, parts, source.matrix, context.scene, placement.same_place(obj), obj, carry)
     report = json.loads(result.report)
     report["version"] = VERSION
