@@ -116,13 +116,20 @@ Closest walk(const TriangleCover& t, const std::vector<Vec3>& p, const Vec3& x, 
     const int h = 3 * face;
     for (int i = 0; i < 3; ++i) {
       // On the edge opposite to corner i + 2, that is half-edge i.
-      if (best.weights[(i + 2) % 3] > 1e-12) continue;
-      const int o = t.opposite[h + i];
-      look(o);
-      // Around the ends: the triangles one further.
-      if (o >= 0) {
-        look(t.opposite[TriangleSurface::next(o)]);
-        look(t.opposite[TriangleSurface::previous(o)]);
+      if (best.weights[(i + 2) % 3] <= 1e-12) look(t.opposite[h + i]);
+      // At corner i: every triangle around it may be closer.
+      if (best.weights[i] < 1 - 1e-12) continue;
+      int g = t.opposite[h + (i + 2) % 3];
+      for (int turn = 0; turn < 32 && g >= 0 && g / 3 != face; ++turn) {
+        look(g);
+        g = t.opposite[TriangleSurface::previous(g)];
+      }
+      if (g >= 0) continue;
+      // A boundary: the other way round.
+      g = t.opposite[h + i];
+      for (int turn = 0; turn < 32 && g >= 0 && g / 3 != face; ++turn) {
+        look(g);
+        g = t.opposite[TriangleSurface::next(g)];
       }
     }
     if (better < 0) break;
@@ -249,13 +256,17 @@ std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSampl
   return result;
 }
 
-void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress) {
+void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress) {
   const int n = static_cast<int>(mesh.points.size());
   if (n == 0 || samples.empty()) return;
   BlockMatrix matrix(mesh);
   const Neighbours neighbours(mesh);
-  // A sample counts as the area it stands for; the regulariser is measured against all that falls to one vertex.
-  const double regularizer = options.smoothness * static_cast<double>(samples.size()) / n;
+  // The regulariser of a vertex is measured against the samples' weight that is meant to fall to it. (Not what does fall to it: at creases some get none.)
+  std::vector<double> regularizer(n, options.smoothness / n);
+  double weight_sum = 0, share_sum = 0;
+  for (const FitSample& s : samples) weight_sum += s.weight;
+  for (const double x : share) share_sum += x;
+  for (int v = 0; v < n; ++v) regularizer[v] = options.smoothness * weight_sum * (share.empty() ? 1.0 / n : share[v] / share_sum);
   struct Anchor {
     std::array<int, 3> v;
     std::array<double, 3> w;
@@ -275,7 +286,8 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSam
     const double a = options.tangential;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const Vec3& normal = samples[i].normal;
-      const Eigen::Matrix3d metric = a * Eigen::Matrix3d::Identity() + (1 - a) * normal * normal.transpose();
+      const double weight = samples[i].weight;
+      const Eigen::Matrix3d metric = weight * (a * Eigen::Matrix3d::Identity() + (1 - a) * normal * normal.transpose());
       const Vec3 target = metric * samples[i].position;
       for (int p = 0; p < 3; ++p) {
         if (anchors[i].w[p] == 0) continue;
@@ -290,9 +302,9 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSam
     for_all(n, [&](int v) { wanted[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(normals[v] * normals[v].dot(neighbours.laplacian(mesh.points, v))); });
     std::vector<Vec3> bent(n);
     const auto apply = [&](const std::vector<Vec3>& x, std::vector<Vec3>& y) {
-      for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : neighbours.laplacian(x, v); });
+      for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(regularizer[v] * neighbours.laplacian(x, v)); });
       for_all(n, [&](int v) {
-        Vec3 sum = regularizer * neighbours.transposed(bent, v);
+        Vec3 sum = neighbours.transposed(bent, v);
         for (int k = matrix.row[v]; k < matrix.row[v + 1]; ++k) sum.noalias() += matrix.block[k] * x[matrix.column[k]];
         y[v] = fixed[v] ? Vec3(Vec3::Zero()) : sum;
       });
@@ -300,16 +312,16 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSam
     // Conjugate gradients on the free vertices, preconditioned by the diagonal blocks.
     std::vector<Eigen::Matrix3d> inverse(n);
     for_all(n, [&](int v) {
-      const double diagonal = regularizer * 1.25;
-      inverse[v] = (matrix.block[matrix.find(v, v)] + (diagonal + 1e-12) * Eigen::Matrix3d::Identity()).inverse();
+      const double diagonal = 1.25 * regularizer[v];
+      inverse[v] = (matrix.block[matrix.find(v, v)] + (diagonal + 1e-300) * Eigen::Matrix3d::Identity()).inverse();
     });
     std::vector<Vec3> residual(n), z(n), direction(n), image(n);
     {
       // The residual at the present positions; fixed vertices enter as data, their own Laplacian being no term.
       std::vector<Vec3> y(n);
-      for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(neighbours.laplacian(mesh.points, v) - wanted[v]); });
+      for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(regularizer[v] * (neighbours.laplacian(mesh.points, v) - wanted[v])); });
       for_all(n, [&](int v) {
-        Vec3 sum = regularizer * neighbours.transposed(bent, v);
+        Vec3 sum = neighbours.transposed(bent, v);
         for (int k = matrix.row[v]; k < matrix.row[v + 1]; ++k) sum.noalias() += matrix.block[k] * mesh.points[matrix.column[k]];
         residual[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(right[v] - sum);
       });

@@ -11,6 +11,7 @@ namespace hybrid_mesh {
 // A point of the surface that the mesh is to come close to, and a face of the mesh near it.
 struct FitSample {
   Vec3 position, normal;
+  double weight = 1;  // the area it stands for, in any unit
   int face = 0;
 };
 
@@ -21,10 +22,11 @@ struct FitOptions {
   int iterations = 60;            // of conjugate gradients a round, at most
 };
 
-// Moves the vertices of a polygon mesh so that the mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay. Samples' faces are updated to
-// those that hold their closest points. Returns each sample's squared distance to the mesh before its last move when `distances` is given.
+// Moves the vertices of a polygon mesh so that the weighted mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay. Samples' faces are updated to
+// those that hold their closest points.
 // Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
-void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress);
+// `share` is the part of the surface that each vertex is meant to stand for, in any unit (a quad's parameter area): the regulariser counts as much there; empty means equal shares.
+void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress);
 
 // Squared distance of every sample to the mesh, by walking from its face; updates the faces.
 std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples);

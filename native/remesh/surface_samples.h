@@ -8,11 +8,12 @@
 
 namespace hybrid_mesh {
 
-// Points spread evenly over the surface that a hierarchy's maps cover, each with its place in the map.
+// Points spread over the surface that a hierarchy's maps cover, each with its place in the map and the area it stands for: as many to every leaf's quad,
+// however small it is.
 class SurfaceSamples {
  public:
-  // About `count` of them.
-  SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count);
+  // About `count` of them; leaves finer than level `finest` count as one of that level.
+  SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest);
   // As samples of a mesh taken from the hierarchy, each with a face of the node that it lies under.
   std::vector<FitSample> on(const HybridMesh& hierarchy, const QuadMesh& mesh) const;
   std::size_t size() const { return samples_.size(); }
@@ -20,6 +21,7 @@ class SurfaceSamples {
  private:
   struct Sample {
     Vec3 position, normal;
+    double weight;
     MapLocation location;
   };
   std::vector<Sample> samples_;
