@@ -21,7 +21,9 @@ def main():
     try:
         answer = JOBS[job["kind"]](job)
     except Exception as error:  # Everything becomes one line: the parent has nothing else to show.
-        answer = {"error": explain(error, job.get("path"))}
+        cause = explain(error, job.get("path"))
+        # The folder that outputs wait in is nobody's business.
+        answer = {"error": cause.replace(job["folder"] + os.sep, "") if "folder" in job else cause}
     sys.stdout.flush()
     # Straight to the descriptor: where Python's stdout is block-buffered or replaced the answer must not be lost.
     os.write(1, ("\n" + RESULT_MARK + json.dumps(answer) + "\n").encode())
