@@ -9,7 +9,6 @@
 
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
-#include "bindings/mesh_dict.h"
 #include "codec/container.h"
 #include "surface/topology_summary.h"
 
@@ -21,10 +20,7 @@ namespace {
 // Runs something that reads the hierarchy while Python's other threads go on.
 template <typename Function>
 auto locked(const PythonHierarchy& hierarchy, Function&& function) {
-  return without_gil([&] {
-    const std::lock_guard lock(*hierarchy.mutex);
-    return function(*hierarchy.mesh);
-  });
+  return without_gil([&] { return hierarchy.locked(function); });
 }
 
 struct Level {
@@ -113,25 +109,31 @@ std::vector<std::string> check(const HybridMesh& mesh) {
 }
 
 std::vector<std::string> level_names(const PythonHierarchy& hierarchy) {
-  std::vector<std::string> names;
-  for (const Level& level : levels_of(*hierarchy.mesh)) names.push_back(level.name());
-  return names;
+  return locked(hierarchy, [](const HybridMesh& mesh) {
+    std::vector<std::string> names;
+    for (const Level& level : levels_of(mesh)) names.push_back(level.name());
+    return names;
+  });
 }
 
 py::dict level(const PythonHierarchy& hierarchy, const std::string& name) {
-  return to_dict(locked(hierarchy, [&](const HybridMesh& mesh) {
-    const Level level = find_level(mesh, name);
-    return annotate(mesh, mesh.level_mesh(level.number, level.kind));
+  return to_dict(without_gil([&] {
+    return hierarchy.annotated(hierarchy.locked([&](const HybridMesh& mesh) {
+      const Level level = find_level(mesh, name);
+      return mesh.level_mesh(level.number, level.kind);
+    }));
   }));
 }
 
 py::dict final_mesh(const PythonHierarchy& hierarchy) {
-  return to_dict(locked(hierarchy, [](const HybridMesh& mesh) { return annotate(mesh, mesh.final_mesh()); }));
+  return to_dict(without_gil([&] {
+    return hierarchy.annotated(hierarchy.locked([](const HybridMesh& mesh) { return mesh.final_mesh(); }));
+  }));
 }
 
 void save(const PythonHierarchy& hierarchy, const py::object& path_object, const std::optional<std::string>& metadata) {
   const std::string path = path_from_python(path_object);
-  locked(hierarchy, [&](const HybridMesh& mesh) { save_hierarchy(mesh, metadata ? *metadata : hierarchy.metadata, path); });
+  locked(hierarchy, [&](const HybridMesh& mesh) { save_hierarchy(mesh, metadata ? *metadata : hierarchy.metadata(), path); });
 }
 
 PythonHierarchy load(const py::object& path_object) {
@@ -149,7 +151,7 @@ void bind_hierarchy(py::module_& module) {
       .def("level", &level, arg("name"), "The mesh of a level, as a dict of arrays.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")
-      .def_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
+      .def_property_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
       .def("check", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, check); }, "What is wrong with it; empty if nothing is.")
       .def("info", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, info); }, "Counts, as JSON text.");
   module.def("load_hierarchy", &load, arg("path"), "Reads what Hierarchy.save() wrote.");

@@ -3,17 +3,44 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 
-#include "hierarchy/hybrid_mesh.h"
+#include "bindings/mesh_dict.h"
 
 namespace hybrid_mesh {
 
-// What Python holds of a hierarchy. The mutex is there because sampling remembers where it was, and the interpreter's lock is released.
-struct PythonHierarchy {
-  std::shared_ptr<const HybridMesh> mesh;
-  std::string metadata;  // JSON text kept in the file
-  std::shared_ptr<std::mutex> mutex = std::make_shared<std::mutex>();
+// What Python holds of a hierarchy. Copies share it.
+class PythonHierarchy {
+ public:
+  PythonHierarchy(std::shared_ptr<const HybridMesh> mesh, std::string metadata) : shared_(std::make_shared<Shared>()), metadata_(std::move(metadata)) {
+    shared_->mesh = std::move(mesh);
+  }
+
+  const std::string& metadata() const { return metadata_; }  // JSON text kept in the file
+
+  // Calls function(const HybridMesh&), one caller at a time: sampling remembers where it was, and Python's other threads may go on.
+  template <typename Function>
+  auto locked(Function&& function) const {
+    const std::lock_guard lock(shared_->mutex);
+    return function(*shared_->mesh);
+  }
+
+  AnnotatedMesh annotated(QuadMesh mesh) const {
+    const std::lock_guard lock(shared_->mutex);
+    if (!shared_->sources) shared_->sources.emplace(*shared_->mesh);
+    return annotate(*shared_->mesh, *shared_->sources, std::move(mesh));
+  }
+
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::shared_ptr<const HybridMesh> mesh;
+    std::optional<VertexSources> sources;  // made when first needed
+  };
+  std::shared_ptr<Shared> shared_;
+  std::string metadata_;
 };
 
 }  // namespace hybrid_mesh

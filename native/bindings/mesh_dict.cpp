@@ -107,22 +107,16 @@ void add_uv(const HybridMesh& hierarchy, AnnotatedMesh& annotated) {
   }
 }
 
-void add_sources(const HybridMesh& hierarchy, AnnotatedMesh& annotated) {
-  const std::size_t count = annotated.mesh.vertex_count();
-  annotated.source_face.assign(count, -1);
-  annotated.source_weights.assign(count, {0, 0, 0});
-  for (std::size_t v = 0; v < count; ++v) {
-    const MapLocation& location = annotated.mesh.location[v];
-    if (location.node < 0 || hierarchy.map_owner(location.node) < 0) continue;
-    const SurfacePoint source = hierarchy.sample(location).source;
-    annotated.source_face[v] = source.face;
-    for (int k = 0; k < 3; ++k) annotated.source_weights[v][k] = static_cast<float>(source.weights[k]);
+void add_sources(const HybridMesh& hierarchy, const VertexSources& vertex_sources, AnnotatedMesh& annotated) {
+  for (const SurfacePoint& source : vertex_sources(hierarchy, annotated.mesh)) {
+    annotated.source_face.push_back(source.face);
+    annotated.source_weights.push_back({static_cast<float>(source.weights[0]), static_cast<float>(source.weights[1]), static_cast<float>(source.weights[2])});
   }
 }
 
 }  // namespace
 
-AnnotatedMesh annotate(const HybridMesh& hierarchy, QuadMesh mesh) {
+AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, QuadMesh mesh) {
   AnnotatedMesh annotated;
   annotated.mesh = std::move(mesh);
   const LevelStretch stretch = level_stretch(hierarchy, annotated.mesh);
@@ -130,7 +124,7 @@ AnnotatedMesh annotate(const HybridMesh& hierarchy, QuadMesh mesh) {
   annotated.anisotropy.assign(stretch.anisotropy.begin(), stretch.anisotropy.end());
   for (const std::int32_t root : annotated.mesh.root) annotated.irregular.push_back(hierarchy.inserted_by(root) >= 0);
   add_uv(hierarchy, annotated);
-  add_sources(hierarchy, annotated);
+  add_sources(hierarchy, vertex_sources, annotated);
   return annotated;
 }
 

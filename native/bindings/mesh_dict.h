@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bindings/vertex_sources.h"
 #include "hierarchy/hybrid_mesh.h"
 
 namespace hybrid_mesh {
@@ -22,7 +23,7 @@ struct AnnotatedMesh {
   std::vector<std::array<float, 3>> source_weights;  // #V: barycentrics in it
 };
 
-AnnotatedMesh annotate(const HybridMesh& hierarchy, QuadMesh mesh);
+AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, QuadMesh mesh);
 pybind11::dict to_dict(const AnnotatedMesh& annotated);
 
 }  // namespace hybrid_mesh

@@ -10,7 +10,6 @@
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
 #include "bindings/job.h"
-#include "bindings/mesh_dict.h"
 #include "codec/container.h"
 #include "surface/topology_summary.h"
 
@@ -117,18 +116,12 @@ PythonResult remesh_and_wait(const py::object& points, const py::object& offsets
 }
 
 py::dict final_mesh(const PythonResult& result) {
-  return to_dict(without_gil([&] {
-    const std::lock_guard lock(*result.hierarchy.mutex);
-    return annotate(result.result->hierarchy, result.result->final_mesh);
-  }));
+  return to_dict(without_gil([&] { return result.hierarchy.annotated(result.result->final_mesh); }));
 }
 
 void save(const PythonResult& result, const py::object& path_object, const std::string& metadata) {
   const std::string path = path_from_python(path_object);
-  without_gil([&] {
-    const std::lock_guard lock(*result.hierarchy.mutex);
-    save_hierarchy(result.result->hierarchy, metadata, path);
-  });
+  without_gil([&] { result.hierarchy.locked([&](const HybridMesh& mesh) { save_hierarchy(mesh, metadata, path); }); });
 }
 
 }  // namespace

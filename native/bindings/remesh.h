@@ -16,9 +16,8 @@ struct PythonResult {
   std::shared_ptr<const RemeshResult> result;
   PythonHierarchy hierarchy;  // that of the result
 
-  explicit PythonResult(std::shared_ptr<const RemeshResult> from) : result(std::move(from)) {
-    hierarchy.mesh = std::shared_ptr<const HybridMesh>(result, &result->hierarchy);
-  }
+  explicit PythonResult(std::shared_ptr<const RemeshResult> from)
+      : result(std::move(from)), hierarchy(std::shared_ptr<const HybridMesh>(result, &result->hierarchy), "") {}
 };
 
 // Throws Error{InvalidInput} that names the key that is unknown, of the wrong type or out of range.

@@ -88,10 +88,10 @@ def test_sources_reproduce_positions_on_the_surface(result):
     weights = mesh["source_weights"].astype(float)
     assert np.allclose(weights.sum(axis=1), 1, atol=1e-5) and (weights > -1e-5).all()
     on_surface = np.einsum("vk,vkd->vd", weights, points[indices.reshape(-1, 3)[mesh["source_face"]]])
-    # A fitted vertex lies near, not at, the place that it was mapped to.
+    # A fitted vertex lies near the surface, and its source is where it is near.
     drift = np.linalg.norm(on_surface - mesh["points"], axis=1)
     edge = np.median(np.linalg.norm(np.diff(mesh["points"][mesh["indices"].reshape(-1, 4)[:, :2]], axis=1), axis=2))
-    assert np.percentile(drift, 99) < 0.5 * edge and drift.max() < 3 * edge
+    assert np.percentile(drift, 99) < 0.25 * edge and drift.max() < edge
 
 
 def test_report(result):
