@@ -37,7 +37,7 @@ class QuadCoarsening {
       if (!collapse_cheapest()) break;
       clean();
     }
-    settle();
+    clean();
     progress(1);
     return layout();
   }
@@ -209,7 +209,7 @@ class QuadCoarsening {
     const auto consider = [&](bool left, int x, int y, const std::array<int, 4>& n1, const std::array<int, 4>& n2) {
       const double valence = lost + energy(x, 0) + energy(y, 0) - energy(x, 1) - energy(y, 1);
       const double change = shape - badness(n1) - badness(n2);
-      const double gain = valence + 0.6 * change;
+      const double gain = valence + 1.5 * change;
       if (gain > best.gain + 1e-9) best = {g, left, gain};
     };
     consider(true, e, b, {e, f, a, b}, {b, c, d, e});
@@ -222,7 +222,6 @@ class QuadCoarsening {
     const int f1 = g / 3, f2 = o / 3;
     // The rotated edge is flipped between two triangles; first the diagonals are turned so that those have the new edge's ends as apexes.
     const int a = mesh_.from(g), d = mesh_.to(g);
-    const int m1 = mate_[f1], m2 = mate_[f2];
     if (!diagonal_at(f1, r.left ? a : d) || !diagonal_at(f2, r.left ? d : a)) return false;
     int h = mesh_.find(a, d);
     if (h < 0 || !mesh_.can_flip(h)) return false;
@@ -233,7 +232,6 @@ class QuadCoarsening {
       mate_[x] = ym, mate_[ym] = x;
       mate_[y] = xm, mate_[xm] = y;
     }
-    (void)m1, (void)m2;
     return true;
   }
 
@@ -296,11 +294,6 @@ class QuadCoarsening {
       if (!diagonal_at(c.face, c.from)) continue;
       const int h = mesh_.find(c.from, c.to);
       if (h < 0 || !mesh_.can_collapse(h)) continue;
-      touched_.clear();
-      mesh_.ring(c.to, touched_);
-      std::vector<int> ring;
-      mesh_.ring(c.from, ring);
-      touched_.insert(touched_.end(), ring.begin(), ring.end());
       collapse(h);
       return true;
     }
@@ -321,8 +314,6 @@ class QuadCoarsening {
       if (!changed) return;
     }
   }
-
-  void settle() { clean(); }
 
   // --- result ----------------------------------------------------------------------------------------------------------------
   QuadLayout layout() const {
@@ -373,7 +364,6 @@ class QuadCoarsening {
   std::vector<MeshEdit>& log_;
   std::vector<int> mate_;   // per face: the other triangle of its quad, or itself
   std::vector<int> split_;  // per face that is its own mate: the boundary half-edge that holds the fourth node
-  std::vector<int> touched_;
   double side_ = 1;
 };
 

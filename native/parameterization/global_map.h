@@ -7,7 +7,7 @@
 namespace hybrid_mesh {
 
 struct GlobalMapOptions {
-  double theta = 0.3;             // see Distortion: small for right angles, large for even size
+  double theta = 0.5;             // see Distortion: small for right angles, large for even size
   double vertices_a_quad = 30;    // of the coarse mesh on which the map is found
   int newton_steps = 15;
   int cone_rounds = 10;           // of moving cones on the coarse mesh, at most

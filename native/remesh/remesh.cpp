@@ -14,6 +14,7 @@
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
+#include "remesh/angle_relaxation.h"
 #include "remesh/quality.h"
 #include "remesh/surface_samples.h"
 #include "remesh/working_surface.h"
@@ -241,7 +242,7 @@ class Remesher {
       const Progress part = progress_.part(0.8 + 0.15 * j / (depth + 1), 0.8 + 0.15 * (j + 1) / (depth + 1));
       const bool last = j == depth;
       QuadMesh mesh = last ? result_.final_mesh : h.level_mesh(j);
-      if (!last) fit(mesh, 3, part);
+      if (!last) fit(mesh, 2, j, part);
       h.set_level_positions(j, mesh);
       report_["levels"].push_back(describe_level(j, mesh, part));
     }
@@ -250,12 +251,31 @@ class Remesher {
 
   std::int64_t samples_for(std::size_t vertices) const { return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000); }
 
-  void fit(QuadMesh& mesh, int rounds, const Progress& progress) {
-    const SurfaceSamples samples(result_.hierarchy, samples_for(mesh.points.size()));
+  // The parameter area of the quads around each vertex.
+  std::vector<double> parameter_shares(const QuadMesh& mesh) const {
+    std::vector<double> share(mesh.points.size(), 0);
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) share[mesh.indices[i]] += std::ldexp(1.0, -2 * result_.hierarchy.level(mesh.node[f]));
+    std::vector<int> count(mesh.points.size(), 0);
+    for (const std::int32_t v : mesh.indices) ++count[v];
+    for (std::size_t v = 0; v < share.size(); ++v) share[v] /= std::max(1, count[v]);
+    return share;
+  }
+
+  void fit(QuadMesh& mesh, int rounds, int level, const Progress& progress) {
+    const SurfaceSamples samples(result_.hierarchy, samples_for(mesh.points.size()), level);
     std::vector<FitSample> on = samples.on(result_.hierarchy, mesh);
     FitOptions fit_options;
+    const std::vector<char> boundary = boundary_vertices(mesh);
+    const std::vector<double> share = parameter_shares(mesh);
     fit_options.rounds = rounds;
-    fit_mesh(mesh, boundary_vertices(mesh), on, fit_options, progress);
+    fit_mesh(mesh, boundary, share, on, fit_options, progress);
+    // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
+    fit_options.rounds = 1;
+    for (int turn = 0; turn < 2; ++turn) {
+      relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
+      fit_mesh(mesh, boundary, share, on, fit_options, progress);
+    }
   }
 
   double measured_l2(const QuadMesh& mesh, std::int64_t samples) {
@@ -273,7 +293,7 @@ class Remesher {
     for (;;) {
       h.refine_uniform(levels);
       result_.final_mesh = h.level_mesh(levels);
-      fit(result_.final_mesh, 4, progress_.part(0.6, 0.8));
+      fit(result_.final_mesh, 2, levels, progress_.part(0.6, 0.8));
       if (!(options_.error > 0) || options_.vertices > 0 || options_.levels >= 0) break;
       if (measured_l2(result_.final_mesh, 50000) <= options_.error || levels >= 9) break;
       ++levels;
@@ -289,27 +309,27 @@ class Remesher {
     const std::int64_t budget = budget_.vertices;
     const int deepest = options_.levels >= 0 ? options_.levels : 12;
     while (h.depth() < deepest && 8 * h.leaf_counts().faces * 2 < 0.35 * static_cast<double>(budget)) h.refine_uniform(h.depth() + 1);
-    const SurfaceSamples samples(h, samples_for(static_cast<std::size_t>(budget)));
     const double start = std::max(0.3, static_cast<double>(h.closed_vertex_count()) / budget);
     const int rounds = 6;
     for (int round = 0; round <= rounds; ++round) {
       const Progress part = progress_.part(0.55 + 0.2 * round / (rounds + 1), 0.55 + 0.2 * (round + 1) / (rounds + 1));
       QuadMesh mesh = h.final_mesh();
+      const SurfaceSamples samples(h, samples_for(mesh.points.size()), h.depth());
       std::vector<FitSample> on = samples.on(h, mesh);
       FitOptions fit_options;
       fit_options.rounds = 2;
-      fit_mesh(mesh, boundary_vertices(mesh), on, fit_options, part);
+      fit_mesh(mesh, boundary_vertices(mesh), parameter_shares(mesh), on, fit_options, part);
       if (options_.error > 0 && measured_l2(mesh, 100000) <= options_.error) break;
       if (round == rounds) break;
       const std::vector<double> squared = squared_distances(mesh, on);
       std::vector<double> error(h.node_count(), 0);
-      for (std::size_t i = 0; i < on.size(); ++i) error[mesh.node[on[i].face]] += squared[i];
+      for (std::size_t i = 0; i < on.size(); ++i) error[mesh.node[on[i].face]] += on[i].weight * squared[i];
       const double fraction = start + (1 - start) * (round + 1.0) / rounds;
       split_worst(error, static_cast<std::int64_t>(fraction * static_cast<double>(budget)), budget, deepest);
     }
     watch_.start("fit");
     result_.final_mesh = h.final_mesh();
-    fit(result_.final_mesh, 4, progress_.part(0.75, 0.8));
+    fit(result_.final_mesh, 2, h.depth(), progress_.part(0.75, 0.8));
     watch_.stop();
   }
 
@@ -394,8 +414,6 @@ class Remesher {
       const VertexId id = mesh.vertex[v];
       (id.kind() == VertexId::Kind::Free && id.index() < h.base_vertex_count() ? of_base : of_transitions) += 1;
     }
-    std::int64_t regular = 0;
-    std::vector<char> has_hanging(h.node_count(), 0);
     const std::int64_t leaves = h.leaf_counts().faces;
     report_["final"] = {{"vertices", mesh.points.size()},
                         {"quads", q.quads},
@@ -409,7 +427,6 @@ class Remesher {
                         {"regular_fraction", 1.0 - static_cast<double>(h.base_count()) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
                         {"irregular_vertices", {{"base", of_base}, {"operations", 0}, {"transitions", of_transitions}}},
                         {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
-    (void)regular;
     h.set_final_positions(mesh);
     watch_.stop();
     place_result();

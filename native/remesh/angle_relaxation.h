@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "base/context.h"
+#include "hierarchy/hybrid_mesh.h"
+
+namespace hybrid_mesh {
+
+struct AngleRelaxationOptions {
+  int sweeps = 20;
+  double enough = 0.75;   // quads whose corners all have a sine of at least this are left alone
+  double flatness = 0.9;  // a vertex moves only where the normals of its quads are within this cosine of their mean
+};
+
+// Moves vertices along the surface, in the tangent plane of the mesh, so that the corners of its quads come nearer to right angles; lengths are free. Vertices with `fixed` set
+// stay. A fit should follow, which brings the vertices back onto the surface.
+void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress);
+
+}  // namespace hybrid_mesh
