@@ -9,6 +9,7 @@ import os
 import sys
 
 import bpy
+import mathutils
 import numpy
 
 TILE = 480  # pixels
@@ -155,7 +156,7 @@ def build(parts):
     return collection, columns, rows, step
 
 
-def light_and_camera(columns, rows, step):
+def light_and_camera(collection, columns, rows, step):
     scene = bpy.context.scene
     world = scene.world or bpy.data.worlds.new("World")
     scene.world = world
@@ -173,14 +174,14 @@ def light_and_camera(columns, rows, step):
         sun.energy, sun.angle = strength, 0.03
         obj = bpy.data.objects.new(name, sun)
         obj.rotation_euler = rotation
-        scene.collection.objects.link(obj)
+        collection.objects.link(obj)
     camera = bpy.data.cameras.new("Camera")
     camera.type = "ORTHO"
     camera.ortho_scale = max(columns * step, rows * 1.14 * step) * 1.0
-    camera.clip_end = 1000 * step
+    camera.clip_end = 100 * step
     obj = bpy.data.objects.new("Camera", camera)
-    obj.location, obj.rotation_euler = (0, -50 * step, -0.03 * step), (numpy.pi / 2, 0, 0)
-    scene.collection.objects.link(obj)
+    obj.location, obj.rotation_euler = (0, -5 * step, -0.03 * step), (numpy.pi / 2, 0, 0)
+    collection.objects.link(obj)
     scene.camera = obj
     render = scene.render
     render.resolution_x, render.resolution_y = int(columns * TILE), int(rows * TILE * 1.14)
@@ -218,7 +219,7 @@ def main():
     if len(parts) > 4 and len(parts) % 2:
         parts.append((f"{levels[-1].hybrid_mesh.level}, shaded", levels[-1].data, False))
     side_by_side, columns, rows, step = build(parts)
-    light_and_camera(columns, rows, step)
+    light_and_camera(side_by_side, columns, rows, step)
     preview.hide_render = source.hide_render = True
     bpy.context.scene.render.filepath = os.path.abspath(picture)
     bpy.ops.render.render(write_still=True)
@@ -228,13 +229,19 @@ def main():
         preview.hide_render = source.hide_render = False
         preview.location.x += 1.2 * max(source.dimensions)
         bpy.context.view_layer.objects.active = preview
-        preview.select_set(True)
+        for obj in bpy.context.view_layer.objects:
+            obj.select_set(False)
         level_bridge.set_level(preview, len(levels) - 1)
         for screen in bpy.data.screens:
             for area in screen.areas:
                 if area.type == "VIEW_3D":
-                    area.spaces.active.shading.color_type = "VERTEX"
-                    area.spaces.active.overlay.show_wireframes = True
+                    space = area.spaces.active
+                    space.shading.color_type = "VERTEX"
+                    space.overlay.show_wireframes = True
+                    space.show_region_ui = True
+                    space.region_3d.view_location = (0.6 * max(source.dimensions), 0, 0.5 * max(source.dimensions))
+                    space.region_3d.view_distance = 3.2 * max(source.dimensions)
+                    space.region_3d.view_rotation = mathutils.Euler((1.35, 0, 0.3)).to_quaternion()
         bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(scene_path[0]), compress=True)
 
 
