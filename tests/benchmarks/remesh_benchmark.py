@@ -2,19 +2,13 @@
 """Remeshes every model of a folder and prints a row each, beside other tools' if asked. All are measured in the same way, against the file as it
 was read. The rows are also written as build/bench/remesh.csv."""
 
-import argparse
-import csv
-import os
 import sys
-from pathlib import Path
 
+import bench
 import tools
+from bench import native
+from quality import measure
 
-sys.path.insert(0, str(tools.STAGE))
-from hybrid_mesh import _native as native  # noqa: E402
-from quality import measure  # noqa: E402
-
-SUFFIXES = {".ply", ".obj", ".off", ".stl"}
 # heading, key, format
 FIGURES = [
     ("vertices", "vertices", "{:d}"),
@@ -34,30 +28,10 @@ SHORT = {"quadriflow": "QF", "instant-meshes": "IM"}
 VERSUS_KEYS = ["vertices", "l2", "q", "irregular", "sj_p05", "sj_median", "inverted_percent", "seconds"]
 
 
-def default_folder():
-    candidates = [os.environ.get("HYBRID_MESH_MODELS"), tools.ROOT.parent / "shared/models", tools.ROOT / "blend_samples"]
-    return next(Path(folder) for folder in candidates if folder and Path(folder).is_dir())
-
-
-def load_model(path):
-    mesh = native.read_mesh(path)
-    triangles = native.repair(*mesh)[:3]
-    topology = native.topology(*triangles)
-    return tools.Model(path.stem, path, mesh, triangles, topology["euler"], topology["boundary_loops"])
-
-
 def figures_of(model, outcome):
     row = measure(native, model.mesh, outcome.mesh)
     row.update(seconds=outcome.seconds, memory_mib=outcome.peak_memory_bytes / 2**20)
     return row
-
-
-def attempt(function, *arguments):
-    """(outcome, None) or (None, why not)."""
-    try:
-        return function(*arguments), None
-    except tools.Failure as failure:
-        return None, str(failure)
 
 
 def text_of(key, pattern, row):
@@ -83,16 +57,16 @@ class Table:
 
 def run_model(path, arguments, options):
     """The row of one model: cells to print, and everything for the file."""
-    model = load_model(path)
+    model = bench.load_model(path)
     record = {"model": model.name}
     cells = [model.name]
-    outcome, failure = attempt(tools.hybrid_mesh, native, model, arguments.vertices, options)
+    outcome, failure = bench.attempt(tools.hybrid_mesh, native, model, arguments.vertices, options)
     ours = figures_of(model, outcome) if outcome else {"failure": failure}
     record.update(ours)
     cells += [text_of(key, pattern, ours) for _, key, pattern in FIGURES]
     failures = [f"hybrid_mesh: {failure}"] if failure else []
     for tool in arguments.versus:
-        other, failure = attempt(tools.VERSUS[tool], model, arguments.vertices)
+        other, failure = bench.attempt(tools.VERSUS[tool], model, arguments.vertices)
         row = figures_of(model, other) if other else {"failure": failure}
         row["l2_over_ours"] = row["l2"] / ours["l2"] if other and outcome else None
         record.update({f"{tool}.{key}": value for key, value in row.items()})
@@ -105,40 +79,15 @@ def run_model(path, arguments, options):
     return cells, record, failures, outcome is not None
 
 
-def write_csv(records, path):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    keys = list(dict.fromkeys(key for record in records for key in record))
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, keys)
-        writer.writeheader()
-        writer.writerows(records)
-
-
 def parse(argv):
-    parser = argparse.ArgumentParser(prog="bench remesh", usage="%(prog)s [FOLDER] [OPTIONS] [-- REMESH OPTIONS]", description=__doc__)
-    parser.add_argument("folder", nargs="?", type=Path, help="of .ply, .obj, .off, .stl files")
-    parser.add_argument("--models", metavar="A,B", help="only these, by name")
-    parser.add_argument("--vertices", type=int, default=20000)
+    parser = bench.parser("bench remesh", __doc__, "remesh.csv")
     parser.add_argument("--versus", metavar="TOOL,TOOL", default="", help="quadriflow, instant-meshes")
-    parser.add_argument("--output", type=Path, default=tools.ROOT / "build/bench/remesh.csv", help="the rows as CSV")
-    parser.add_argument("--adaptive", action="store_true")
-    end = argv.index("--") if "--" in argv else len(argv)
-    arguments, options = parser.parse_args(argv[:end]), argv[end + 1 :]
+    arguments, options = bench.parse(parser, argv)
     arguments.versus = [tool for tool in arguments.versus.split(",") if tool]
     unknown = set(arguments.versus) - set(tools.VERSUS)
     if unknown:
         parser.error(f"--versus knows quadriflow and instant-meshes, not {', '.join(sorted(unknown))}")
-    arguments.folder = arguments.folder or default_folder()
-    arguments.paths = sorted(path for path in arguments.folder.iterdir() if path.suffix.lower() in SUFFIXES)
-    if arguments.models:
-        names = arguments.models.split(",")
-        missing = set(names) - {path.stem for path in arguments.paths}
-        if missing:
-            parser.error(f"{arguments.folder} has no {', '.join(sorted(missing))}")
-        arguments.paths = [path for path in arguments.paths if path.stem in names]
-    if not arguments.paths:
-        parser.error(f"no meshes in {arguments.folder}")
-    return arguments, options + (["--adaptive"] if arguments.adaptive else [])
+    return arguments, options
 
 
 def main(argv):
@@ -151,7 +100,7 @@ def main(argv):
         records.append(record)
         failures += [f"{path.stem}: {line}" for line in failed]
         all_done = all_done and done
-        write_csv(records, arguments.output)
+        bench.write_csv(records, arguments.output)
     for line in failures:
         print(line)
     print(f"rows in {arguments.output}")

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the benchmarks share: the models, the command line, the rows."""
+
+import argparse
+import csv
+import os
+import sys
+from pathlib import Path
+
+import tools
+
+sys.path.insert(0, str(tools.STAGE))
+from hybrid_mesh import _native as native  # noqa: E402
+
+SUFFIXES = {".ply", ".obj", ".off", ".stl"}
+
+
+def default_folder():
+    candidates = [os.environ.get("HYBRID_MESH_MODELS"), tools.ROOT.parent / "shared/models", tools.ROOT / "blend_samples"]
+    return next(Path(folder) for folder in candidates if folder and Path(folder).is_dir())
+
+
+def load_model(path):
+    mesh = native.read_mesh(path)
+    triangles = native.repair(*mesh)[:3]
+    topology = native.topology(*triangles)
+    return tools.Model(path.stem, path, mesh, triangles, topology["euler"], topology["boundary_loops"])
+
+
+def attempt(function, *arguments):
+    """(outcome, None) or (None, why not)."""
+    try:
+        return function(*arguments), None
+    except tools.Failure as failure:
+        return None, str(failure)
+
+
+def write_csv(records, path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    keys = list(dict.fromkeys(key for record in records for key in record))
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, keys)
+        writer.writeheader()
+        writer.writerows(records)
+
+
+def parser(name, description, rows):
+    made = argparse.ArgumentParser(prog=name, usage="%(prog)s [FOLDER] [OPTIONS] [-- REMESH OPTIONS]", description=description)
+    made.add_argument("folder", nargs="?", type=Path, help="of .ply, .obj, .off, .stl files")
+    made.add_argument("--models", metavar="A,B", help="only these, by name")
+    made.add_argument("--vertices", type=int, default=20000)
+    made.add_argument("--adaptive", action="store_true")
+    made.add_argument("--output", type=Path, default=tools.ROOT / "build/bench" / rows, help="the rows as CSV")
+    return made
+
+
+def parse(made, argv):
+    """(arguments with the models' `paths`, options for our own command line)."""
+    end = argv.index("--") if "--" in argv else len(argv)
+    arguments, options = made.parse_args(argv[:end]), argv[end + 1 :]
+    arguments.folder = arguments.folder or default_folder()
+    arguments.paths = sorted(path.resolve() for path in arguments.folder.iterdir() if path.suffix.lower() in SUFFIXES)
+    if arguments.models:
+        names = arguments.models.split(",")
+        missing = set(names) - {path.stem for path in arguments.paths}
+        if missing:
+            made.error(f"{arguments.folder} has no {', '.join(sorted(missing))}")
+        arguments.paths = [path for path in arguments.paths if path.stem in names]
+    if not arguments.paths:
+        made.error(f"no meshes in {arguments.folder}")
+    return arguments, options + (["--adaptive"] if arguments.adaptive else [])
