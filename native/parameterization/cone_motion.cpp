@@ -40,6 +40,7 @@ class ConeMotion {
 
  private:
   struct Member {
+    explicit Member(int v) : vertex(v) {}
     int vertex;
     double radius = 0, angle = 0;  // developed around the cone: angle in [0, quads * pi / 2)
     int home = -1;                 // a half-edge that leaves it, in a face of the disc ...
@@ -53,7 +54,7 @@ class ConeMotion {
     quads_ = c_.angle_at(cone) / (0.5 * std::numbers::pi);
     quads_ = std::round(quads_);
     std::vector<int> ring{cone}, next_ring, around;
-    members_.push_back({cone});
+    members_.emplace_back(cone);
     index_[cone] = 0;
     for (int r = 1; r <= kRings; ++r) {
       next_ring.clear();
@@ -62,7 +63,7 @@ class ConeMotion {
         c_.mesh.ring(v, around);
         for (const int w : around)
           if (index_.insert({w, static_cast<int>(members_.size())}).second) {
-            members_.push_back({w});
+            members_.emplace_back(w);
             next_ring.push_back(w);
           }
       }

@@ -27,7 +27,7 @@ class MapSmoothing {
     progress(0.1);
     relax_bad_stars(0.02, 30, progress.part(0.1, 0.2));
     report_.energy_before = mean_energy();
-    const int target = static_cast<int>(options_.vertices_a_quad * surface_.patch_count());
+    const int target = static_cast<int>(std::min(options_.vertices_a_quad * surface_.patch_count(), 2e9));
     const std::vector<std::size_t> levels = collapse(target);
     progress(0.3);
     report_.coarse_vertices = c_.mesh.vertex_count;

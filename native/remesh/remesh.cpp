@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <queue>
 
 #include "hierarchy/stretch.h"
@@ -203,11 +205,19 @@ class Remesher {
     progress_.stage("map");
     watch_.start("map");
     const std::vector<std::array<Vec2, 3>> corners = map_patches(patches, progress_.part(0.2, 0.25));
-    ChartMesh charts(patches, corners);
+    auto charts = std::make_unique<ChartMesh>(patches, corners);
     GlobalMapOptions map_options;
-    smooth_map(charts, patches, map_options, progress_.part(0.25, 0.5));
+    try {
+      smooth_map(*charts, patches, map_options, progress_.part(0.25, 0.5));
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+      // A vertex of the collapse hierarchy found no place: without the hierarchy the map is found more slowly, but nothing can fail.
+      charts = std::make_unique<ChartMesh>(patches, corners);
+      map_options.vertices_a_quad = std::numeric_limits<double>::infinity();
+      smooth_map(*charts, patches, map_options, progress_.part(0.25, 0.5));
+    }
     watch_.start("extract");
-    std::vector<PatchMap> maps = extract_patch_maps(charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
+    std::vector<PatchMap> maps = extract_patch_maps(*charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
     std::vector<std::array<SideLink, 4>> links(patches.patch_count());
     for (int q = 0; q < patches.patch_count(); ++q)
       for (int i = 0; i < 4; ++i) links[q][i] = {patches.neighbours[q][i].patch, patches.neighbours[q][i].side};

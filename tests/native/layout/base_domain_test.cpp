@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/base_domain.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "generated_surfaces.h"
+#include "layout/decimation.h"
+#include "models.h"
+#include "remesh/working_surface.h"
+#include "surface/edit_mesh.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using testing::ball;
+using testing::repaired;
+using testing::torus;
+
+TriangleSurface unit(TriangleSurface s) {
+  const Placement p = placement_of(s.points);
+  for (Vec3& x : s.points) x = p.to_unit(x);
+  return s;
+}
+
+long euler(const EditMesh& m) {
+  long halves = 0, boundary = 0;
+  for (std::size_t h = 0; h < m.origin.size(); ++h)
+    if (m.alive[h / 3]) ++halves, boundary += m.opposite[h] < 0;
+  return m.vertex_count - (halves + boundary) / 2 + m.face_count;
+}
+
+// Links symmetric, outgoing half-edges right, one fan a vertex, no double edges.
+void expect_sound(const EditMesh& m) {
+  std::set<std::pair<int, int>> directed;
+  std::vector<int> corners(m.out.size(), 0);
+  for (int h = 0; h < static_cast<int>(m.origin.size()); ++h) {
+    if (!m.alive[h / 3]) continue;
+    ++corners[m.from(h)];
+    ASSERT_TRUE(m.vertex_alive(m.from(h)));
+    ASSERT_TRUE(directed.insert({m.from(h), m.to(h)}).second);
+    const int o = m.opposite[h];
+    if (o < 0) continue;
+    ASSERT_EQ(m.opposite[o], h);
+    ASSERT_EQ(m.from(o), m.to(h));
+    ASSERT_EQ(m.to(o), m.from(h));
+    ASSERT_EQ(m.edge[o], m.edge[h]);
+  }
+  for (int v = 0; v < static_cast<int>(m.out.size()); ++v) {
+    if (!m.vertex_alive(v)) continue;
+    int fan = 0, h = m.out[v];
+    ASSERT_EQ(m.from(h), v);
+    do {
+      ++fan;
+      h = m.ccw(h);
+    } while (h >= 0 && h != m.out[v]);
+    ASSERT_EQ(fan, corners[v]);
+    if (h < 0) {
+      ASSERT_LT(m.opposite[m.out[v]], 0);
+    }
+  }
+}
+
+TEST(EditMesh, RandomOperationsKeepTheTopologyAndUndoExactly) {
+  for (const TriangleSurface& surface : {repaired(torus(12, 9)), repaired(ball(5, 0.3)), repaired(ball(4))}) {
+    EditMesh mesh(surface);
+    const EditMesh before = mesh;
+    const long chi = euler(mesh);
+    std::mt19937 random(7);
+    std::vector<MeshEdit> log;
+    for (int i = 0; i < 4000; ++i) {
+      const int h = static_cast<int>(random() % mesh.origin.size());
+      if (!mesh.alive[h / 3]) continue;
+      if (random() % 3 == 0) {
+        if (!mesh.can_flip(h)) continue;
+        mesh.flip(h);
+        log.push_back({MeshEdit::Kind::Flip, h});
+      } else {
+        if (!mesh.can_collapse(h)) continue;
+        mesh.collapse(h);
+        log.push_back({MeshEdit::Kind::Collapse, h});
+      }
+      if (i % 50 == 0) expect_sound(mesh);
+    }
+    expect_sound(mesh);
+    EXPECT_EQ(euler(mesh), chi);
+    EXPECT_GT(log.size(), 50u);
+    for (std::size_t i = log.size(); i-- > 0;) log[i].kind == MeshEdit::Kind::Flip ? mesh.undo_flip(log[i].half_edge) : mesh.undo_collapse(log[i].half_edge);
+    EXPECT_EQ(mesh.origin, before.origin);
+    EXPECT_EQ(mesh.opposite, before.opposite);
+    EXPECT_EQ(mesh.edge, before.edge);
+  }
+}
+
+// Every patch is a disk whose rim is made of its four sides; sides are shared; the patches tile the surface.
+void expect_layout(const TriangleSurface& surface, const PatchedSurface& p) {
+  double before = 0, after = 0;
+  for (const auto& f : surface.faces) before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  for (const auto& f : p.mesh.faces) after += (p.mesh.points[f[1]] - p.mesh.points[f[0]]).cross(p.mesh.points[f[2]] - p.mesh.points[f[0]]).norm();
+  EXPECT_NEAR(after, before, 1e-9 * before);
+  std::vector<std::set<int>> vertices(p.patch_count());
+  std::vector<std::set<std::pair<int, int>>> edges(p.patch_count());
+  std::vector<long> faces(p.patch_count(), 0);
+  for (std::size_t f = 0; f < p.mesh.faces.size(); ++f) {
+    const int q = p.patch[f];
+    ASSERT_GE(q, 0);
+    ++faces[q];
+    for (int i = 0; i < 3; ++i) {
+      vertices[q].insert(p.mesh.faces[f][i]);
+      edges[q].insert(std::minmax(p.mesh.faces[f][i], p.mesh.faces[f][(i + 1) % 3]));
+    }
+  }
+  for (int q = 0; q < p.patch_count(); ++q) {
+    EXPECT_EQ(static_cast<long>(vertices[q].size()) - static_cast<long>(edges[q].size()) + faces[q], 1) << "patch " << q << " is no disk";
+    for (int i = 0; i < 4; ++i) {
+      const std::vector<int>& side = p.sides[q][i];
+      ASSERT_GE(side.size(), 2u);
+      EXPECT_EQ(side.back(), p.sides[q][(i + 1) % 4].front());
+      for (std::size_t k = 1; k < side.size(); ++k) EXPECT_TRUE(edges[q].count(std::minmax(side[k - 1], side[k])));
+      const PatchSide other = p.neighbours[q][i];
+      if (other.patch < 0) continue;
+      std::vector<int> reversed = p.sides[other.patch][other.side];
+      std::reverse(reversed.begin(), reversed.end());
+      EXPECT_EQ(reversed, side);
+      EXPECT_EQ(p.neighbours[other.patch][other.side].patch, q);
+      EXPECT_EQ(p.neighbours[other.patch][other.side].side, i);
+    }
+  }
+  // Points lie where their sources say.
+  for (std::size_t v = 0; v < p.mesh.points.size(); ++v) {
+    Vec3 at = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+      if (p.source[v].vertices[k] >= 0) at += p.source[v].weights[k] * surface.points[p.source[v].vertices[k]];
+    EXPECT_LT((at - p.mesh.points[v]).norm(), 1e-12);
+  }
+}
+
+TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
+  PolygonSoup several = ball(6);
+  testing::add(several, ball(5, 0.5, Vec3(4, 0, 0), 0.5));
+  testing::add(several, torus(20, 12));
+  for (const PolygonSoup& soup : {ball(8), ball(8, 0.4), torus(40, 18), several}) {
+    const TriangleSurface surface = unit(repaired(soup));
+    for (const double size : {1.0, 12.0, 60.0, 200.0}) {
+      Context context;
+      BaseDomainOptions options;
+      options.size = size;
+      const PatchedSurface p = make_base_domain(surface, options, Progress(context));
+      expect_layout(surface, p);
+      if (size >= 60) {
+        EXPECT_LE(p.patch_count(), size);
+      }
+      EXPECT_GT(p.patch_count(), 0);
+    }
+  }
+}
+
+TEST(BaseDomain, ReachesTheSizeAskedForWithCleanValences) {
+  const TriangleSurface surface = unit(repaired(torus(60, 30)));
+  Context context;
+  BaseDomainOptions options;
+  options.size = 100;
+  const PatchedSurface p = make_base_domain(surface, options, Progress(context));
+  EXPECT_LE(p.patch_count(), 100);
+  EXPECT_GE(p.patch_count(), 98);
+  std::vector<int> valence(p.node_count, 0);
+  for (const auto& n : p.nodes)
+    for (const int v : n) ++valence[v];
+  for (const int k : valence) {
+    EXPECT_GE(k, 3);
+    EXPECT_LE(k, 6);
+  }
+}
+
+TEST(BaseDomain, ASeedDecidesNearTiesAndNothingElse) {
+  const TriangleSurface surface = unit(repaired(ball(10)));
+  Context context;
+  BaseDomainOptions options;
+  options.size = 40;
+  const PatchedSurface a = make_base_domain(surface, options, Progress(context)), b = make_base_domain(surface, options, Progress(context));
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.mesh.faces, b.mesh.faces);
+}
+
+TEST(BaseDomain, CancelEndsIt) {
+  const TriangleSurface surface = unit(repaired(ball(20)));
+  Context context;
+  context.cancel();
+  try {
+    make_base_domain(surface, BaseDomainOptions(), Progress(context));
+    FAIL() << "not cancelled";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::Cancelled);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_mesh

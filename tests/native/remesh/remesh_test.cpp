@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/remesh.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "codec/container.h"
+#include "generated_surfaces.h"
+#include "models.h"
+#include "remesh/fit.h"
+#include "surface/topology_summary.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using testing::ball;
+using testing::torus;
+
+RemeshResult run(const PolygonSoup& soup, std::int64_t vertices, Refinement refinement, int threads = 0) {
+  RemeshOptions options;
+  options.vertices = vertices;
+  options.refinement = refinement;
+  options.threads = threads;
+  Context context;
+  RemeshResult r = remesh(soup, options, context);
+  EXPECT_EQ(context.progress(), 1);
+  return r;
+}
+
+void expect_good(const RemeshResult& r, std::int64_t vertices) {
+  const TopologySummary before = summarize_topology(to_soup(r.repaired)), after = summarize_topology(to_soup(r.final_mesh));
+  EXPECT_EQ(after.nonmanifold_edges + after.nonmanifold_vertices + after.misoriented_edges, 0);
+  EXPECT_EQ(after.components, before.components);
+  EXPECT_EQ(after.boundary_loops, before.boundary_loops);
+  EXPECT_EQ(after.genus, before.genus);
+  EXPECT_LE(after.vertices, vertices);
+  EXPECT_GE(after.vertices, 0.98 * vertices);
+  for (std::size_t f = 0; f < r.final_mesh.face_count(); ++f) ASSERT_EQ(r.final_mesh.offsets[f + 1] - r.final_mesh.offsets[f], 4);
+  EXPECT_TRUE(find_defects(r.hierarchy).empty());
+  EXPECT_LE(r.report["final"]["hausdorff"].get<double>(), 0.01);
+  EXPECT_EQ(r.report["final"]["vertices"].get<std::int64_t>(), after.vertices);
+  EXPECT_EQ(r.report["levels"].size(), static_cast<std::size_t>(r.hierarchy.depth() + 1));
+}
+
+class RemeshKinds : public ::testing::TestWithParam<Refinement> {};
+INSTANTIATE_TEST_SUITE_P(Refinements, RemeshKinds, ::testing::Values(Refinement::Uniform, Refinement::Adaptive));
+
+TEST_P(RemeshKinds, KeepTopologyBudgetAndShape) {
+  PolygonSoup several = ball(16);
+  testing::add(several, ball(14, 0.5, Vec3(3, 0, 0), 0.8));
+  testing::add(several, torus(40, 20));
+  for (const PolygonSoup& soup : {ball(20), ball(20, 0.5), torus(60, 30), several}) expect_good(run(soup, 3000, GetParam()), 3000);
+}
+
+TEST_P(RemeshKinds, SameBytesWhateverTheThreadsAndTheRun) {
+  const PolygonSoup soup = torus(50, 25);
+  const auto bytes = [&](int threads) { return encode_hierarchy(run(soup, 2000, GetParam(), threads).hierarchy, "{}"); };
+  const auto first = bytes(1);
+  EXPECT_EQ(first, bytes(2));
+  EXPECT_EQ(first, bytes(1));
+}
+
+TEST_P(RemeshKinds, AreAsGoodFarAwayAndAtAnyScale) {
+  const PolygonSoup soup = ball(20);
+  const double l2 = run(soup, 2000, GetParam()).report["final"]["l2"].get<double>();
+  for (const auto& [shift, scale] : {std::pair(2000.0, 1.0), std::pair(0.0, 1e-3), std::pair(0.0, 1e3)}) {
+    PolygonSoup moved = soup;
+    for (Vec3& p : moved.points) p = scale * p + Vec3(shift, -shift, shift);
+    const RemeshResult r = run(moved, 2000, GetParam());
+    expect_good(r, 2000);
+    EXPECT_NEAR(r.report["final"]["l2"].get<double>(), l2, 0.25 * l2);
+  }
+}
+
+TEST(Remesh, LevelsAreExactWhenAskedForAndErrorsAreKept) {
+  RemeshOptions options;
+  options.levels = 2;
+  options.vertices = 3000;
+  Context a;
+  EXPECT_EQ(remesh(ball(16), options, a).hierarchy.depth(), 2);
+  RemeshOptions bound;
+  bound.error = 2e-3;
+  Context b;
+  EXPECT_LE(remesh(ball(16), bound, b).report["final"]["l2"].get<double>(), 2.2e-3);
+}
+
+TEST(Remesh, RefusesWhatItCannotDoWithTheReason) {
+  const auto message = [](const PolygonSoup& soup, const RemeshOptions& options) -> std::string {
+    Context context;
+    try {
+      remesh(soup, options, context);
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+      return e.what();
+    }
+    return "";
+  };
+  RemeshOptions tiny;
+  tiny.vertices = 3;
+  EXPECT_NE(message(torus(30, 20), tiny).find("at least"), std::string::npos);
+  RemeshOptions negative;
+  negative.vertices = -1;
+  EXPECT_NE(message(ball(4), negative).find("vertices"), std::string::npos);
+  EXPECT_NE(message(PolygonSoup(), RemeshOptions()), "");
+  RemeshOptions strict;
+  strict.strict = true;
+  EXPECT_NE(message(ball(4), strict).find("points to merge"), std::string::npos);
+}
+
+TEST(Remesh, CancelEndsItWherever) {
+  for (const double at : {0.0, 0.1, 0.3, 0.6, 0.9}) {
+    Context context;
+    std::thread watcher([&] {
+      while (context.progress() < at) std::this_thread::yield();
+      context.cancel();
+    });
+    RemeshOptions options;
+    options.vertices = 4000;
+    EXPECT_THROW(remesh(ball(30), options, context), Error);
+    watcher.join();
+  }
+}
+
+TEST(Fit, PullsAMeshOntoThePlaneItsSamplesLieIn) {
+  HybridMesh h = HybridMesh::from_base(4, {{0, 1, 2, 3}});
+  h.refine_uniform(3);
+  QuadMesh mesh = h.level_mesh(3);
+  const std::vector<char> fixed(mesh.points.size(), 0);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) mesh.points[v] = Vec3(mesh.location[v].u, mesh.location[v].v, 0.02 * std::sin(9.0 * static_cast<double>(v)));
+  std::vector<FitSample> samples;
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) samples.push_back({Vec3((i + 0.5) / 60, (j + 0.5) / 60, 0.1), Vec3(0, 0, 1), 1.0, 0});
+  for (FitSample& s : samples)
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      Vec3 c = Vec3::Zero();
+      for (int k = 0; k < 4; ++k) c += 0.25 * mesh.points[mesh.indices[mesh.offsets[f] + k]];
+      if (std::abs(c.x() - s.position.x()) < 0.0626 && std::abs(c.y() - s.position.y()) < 0.0626) s.face = static_cast<int>(f);
+    }
+  Context context;
+  fit_mesh(mesh, fixed, {}, samples, FitOptions(), Progress(context));
+  for (const Vec3& p : mesh.points) EXPECT_NEAR(p.z(), 0.1, 2e-3);
+}
+
+}  // namespace
+}  // namespace hybrid_mesh
