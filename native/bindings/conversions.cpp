@@ -82,8 +82,6 @@ py::tuple soup_to_arrays(const PolygonSoup& soup) {
   return py::make_tuple(rows_to_array<double>(soup.points), to_array(soup.offsets), to_array(soup.indices));
 }
 
-std::string path_from_python(const py::object& path) {
-  return py::bytes(py::module_::import("os").attr("fsencode")(path)).cast<std::string>();
-}
+std::string path_from_python(const py::object& path) { return py::bytes(py::module_::import("os").attr("fsencode")(path)).cast<std::string>(); }
 
 }  // namespace hybrid_mesh

@@ -126,9 +126,7 @@ py::dict level(const PythonHierarchy& hierarchy, const std::string& name) {
 }
 
 py::dict final_mesh(const PythonHierarchy& hierarchy) {
-  return to_dict(without_gil([&] {
-    return hierarchy.annotated(hierarchy.locked([](const HybridMesh& mesh) { return mesh.final_mesh(); }));
-  }));
+  return to_dict(without_gil([&] { return hierarchy.annotated(hierarchy.locked([](const HybridMesh& mesh) { return mesh.final_mesh(); })); }));
 }
 
 void save(const PythonHierarchy& hierarchy, const py::object& path_object, const std::optional<std::string>& metadata) {
@@ -152,8 +150,10 @@ void bind_hierarchy(py::module_& module) {
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")
       .def_property_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
-      .def("check", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, check); }, "What is wrong with it; empty if nothing is.")
-      .def("info", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, info); }, "Counts, as JSON text.");
+      .def(
+          "check", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, check); }, "What is wrong with it; empty if nothing is.")
+      .def(
+          "info", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, info); }, "Counts, as JSON text.");
   module.def("load_hierarchy", &load, arg("path"), "Reads what Hierarchy.save() wrote.");
 }
 

@@ -14,7 +14,8 @@ namespace hybrid_mesh {
 // What Python holds of a hierarchy. Copies share it.
 class PythonHierarchy {
  public:
-  PythonHierarchy(std::shared_ptr<const HybridMesh> mesh, std::string metadata) : shared_(std::make_shared<Shared>()), metadata_(std::move(metadata)) {
+  PythonHierarchy(std::shared_ptr<const HybridMesh> mesh, std::string metadata)
+      : shared_(std::make_shared<Shared>()), metadata_(std::move(metadata)) {
     shared_->mesh = std::move(mesh);
   }
 

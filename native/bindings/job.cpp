@@ -36,7 +36,7 @@ class RemeshJob {
   }
 
  private:
-  std::shared_ptr<RemeshResult> result_;  // written by the job's thread until it is done
+  std::shared_ptr<RemeshResult> result_;       // written by the job's thread until it is done
   std::optional<PythonResult> python_result_;  // guarded by the interpreter's lock
   Job job_;
 };
@@ -73,8 +73,7 @@ LiveJobs& live_jobs() {
   return jobs;
 }
 
-std::shared_ptr<RemeshJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices,
-                                        const py::dict& settings) {
+std::shared_ptr<RemeshJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
   auto job = std::make_shared<RemeshJob>(soup_from_arrays(points, offsets, indices), remesh_options_from_dict(settings));
   live_jobs().add(job);
   return job;
@@ -107,15 +106,20 @@ bool wait_interruptibly(const Job& job, std::optional<double> timeout_s) {
 void bind_job(py::module_& module) {
   using py::arg;
   py::class_<RemeshJob, std::shared_ptr<RemeshJob>>(module, "Job", "A remesh that runs on a thread of its own.")
-      .def_property_readonly("progress", [](RemeshJob& job) { return job.job().progress(); }, "In [0, 1], never decreasing.")
-      .def_property_readonly("stage", [](RemeshJob& job) { return job.job().stage(); }, "What is being done.")
-      .def_property_readonly("done", [](RemeshJob& job) { return job.job().done(); }, "It has ended, in whatever way.")
-      .def("cancel", [](RemeshJob& job) { job.job().cancel(); }, "Asks it to end; result() then raises Cancelled.")
+      .def_property_readonly(
+          "progress", [](RemeshJob& job) { return job.job().progress(); }, "In [0, 1], never decreasing.")
+      .def_property_readonly(
+          "stage", [](RemeshJob& job) { return job.job().stage(); }, "What is being done.")
+      .def_property_readonly(
+          "done", [](RemeshJob& job) { return job.job().done(); }, "It has ended, in whatever way.")
+      .def(
+          "cancel", [](RemeshJob& job) { job.job().cancel(); }, "Asks it to end; result() then raises Cancelled.")
       .def("wait", &wait, arg("timeout_s") = py::none(), "Waits until it has ended or the time is over; returns `done`.")
       .def("result", &RemeshJob::result, "Waits, then returns the Result or raises what went wrong.");
   module.def("start_remesh", &start_remesh, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
              "Starts a remesh and returns its Job at once.");
-  module.def("shutdown_jobs", [] { live_jobs().stop_all(); }, "Cancels every job that is still running and waits for its thread.");
+  module.def(
+      "shutdown_jobs", [] { live_jobs().stop_all(); }, "Cancels every job that is still running and waits for its thread.");
   py::module_::import("atexit").attr("register")(module.attr("shutdown_jobs"));
 }
 

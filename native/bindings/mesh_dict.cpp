@@ -110,7 +110,8 @@ void add_uv(const HybridMesh& hierarchy, AnnotatedMesh& annotated) {
 void add_sources(const HybridMesh& hierarchy, const VertexSources& vertex_sources, AnnotatedMesh& annotated) {
   for (const SurfacePoint& source : vertex_sources(hierarchy, annotated.mesh)) {
     annotated.source_face.push_back(source.face);
-    annotated.source_weights.push_back({static_cast<float>(source.weights[0]), static_cast<float>(source.weights[1]), static_cast<float>(source.weights[2])});
+    annotated.source_weights.push_back(
+        {static_cast<float>(source.weights[0]), static_cast<float>(source.weights[1]), static_cast<float>(source.weights[2])});
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reading, writing, repairing and comparing meshes.
-#include "bindings/conversions.h"
 #include "bindings/bindings.h"
+#include "bindings/conversions.h"
 #include "bindings/job.h"
 #include "surface/distance.h"
 #include "surface/repair.h"
@@ -44,9 +44,8 @@ py::tuple repair_mesh(const py::object& points, const py::object& offsets, const
   const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
   if (!(drop_components >= 0 && drop_components < 1)) throw Error(ErrorCode::InvalidInput, "drop_components must be in [0, 1)");
   RepairReport report;
-  const PolygonSoup repaired = run_interruptibly([&](Context& context) {
-    return to_soup(repair(soup, RepairOptions{drop_components}, report, Progress(context)));
-  });
+  const PolygonSoup repaired =
+      run_interruptibly([&](Context& context) { return to_soup(repair(soup, RepairOptions{drop_components}, report, Progress(context))); });
   py::dict counts;
   counts["merged_points"] = report.merged_points;
   counts["isolated_points"] = report.isolated_points;

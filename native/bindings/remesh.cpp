@@ -72,14 +72,21 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
   } else if (key == "levels") {
     options.levels = static_cast<int>(setting.whole_number(-1, 20));
   } else if (key == "refinement") {
-    if (setting.is("uniform")) options.refinement = Refinement::Uniform;
-    else if (setting.is("adaptive")) options.refinement = Refinement::Adaptive;
-    else setting.refuse("'uniform' or 'adaptive'");
+    if (setting.is("uniform"))
+      options.refinement = Refinement::Uniform;
+    else if (setting.is("adaptive"))
+      options.refinement = Refinement::Adaptive;
+    else
+      setting.refuse("'uniform' or 'adaptive'");
   } else if (key == "faces") {
-    if (setting.is("quads")) options.faces = FaceClosure::Quads;
-    else if (setting.is("transition")) options.faces = FaceClosure::Transition;
-    else if (setting.is("triangles")) options.faces = FaceClosure::Triangles;
-    else setting.refuse("'quads', 'transition' or 'triangles'");
+    if (setting.is("quads"))
+      options.faces = FaceClosure::Quads;
+    else if (setting.is("transition"))
+      options.faces = FaceClosure::Transition;
+    else if (setting.is("triangles"))
+      options.faces = FaceClosure::Triangles;
+    else
+      setting.refuse("'quads', 'transition' or 'triangles'");
   } else if (key == "base") {
     if (setting.is("auto")) {
       options.base = BaseSize::Auto;
@@ -108,8 +115,7 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
   }
 }
 
-PythonResult remesh_and_wait(const py::object& points, const py::object& offsets, const py::object& indices,
-                                              const py::dict& settings) {
+PythonResult remesh_and_wait(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
   const RemeshOptions options = remesh_options_from_dict(settings);
   const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
   return PythonResult(run_interruptibly([&](Context& context) { return std::make_shared<RemeshResult>(remesh(soup, options, context)); }));
@@ -129,7 +135,8 @@ void save(const PythonResult& result, const py::object& path_object, const std::
 RemeshOptions remesh_options_from_dict(const py::dict& settings) {
   RemeshOptions options;
   for (const auto& [key, value] : settings) {
-    if (!py::isinstance<py::str>(key)) throw Error(ErrorCode::InvalidInput, "a setting's name must be text, not " + py::repr(key).cast<std::string>());
+    if (!py::isinstance<py::str>(key))
+      throw Error(ErrorCode::InvalidInput, "a setting's name must be text, not " + py::repr(key).cast<std::string>());
     const auto name = key.cast<std::string>();
     apply(options, name, Setting(name, value));
   }
@@ -139,13 +146,18 @@ RemeshOptions remesh_options_from_dict(const py::dict& settings) {
 void bind_remesh(py::module_& module) {
   using py::arg;
   py::class_<PythonResult>(module, "Result", "What a remesh gives.")
-      .def_property_readonly("report", [](const PythonResult& result) { return result.result->report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); }, "JSON text.")
+      .def_property_readonly(
+          "report",
+          [](const PythonResult& result) { return result.result->report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); },
+          "JSON text.")
       .def_readonly("hierarchy", &PythonResult::hierarchy, "The levels.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
-      .def("repaired", [](const PythonResult& result) { return soup_to_arrays(to_soup(result.result->repaired)); },
-           "The triangle surface that was remeshed: (points, face_offsets, face_indices).")
-      .def_property_readonly("repaired_source_faces", [](const PythonResult& result) { return to_array(result.result->repaired.source_face); },
-                             "For each face of the repaired surface the triangle of the input, as it was triangulated.")
+      .def(
+          "repaired", [](const PythonResult& result) { return soup_to_arrays(to_soup(result.result->repaired)); },
+          "The triangle surface that was remeshed: (points, face_offsets, face_indices).")
+      .def_property_readonly(
+          "repaired_source_faces", [](const PythonResult& result) { return to_array(result.result->repaired.source_face); },
+          "For each face of the repaired surface the triangle of the input, as it was triangulated.")
       .def("save", &save, arg("path"), arg("metadata") = "", "Writes the hierarchy with its maps.");
   module.def("remesh", &remesh_and_wait, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
              "Remeshes and returns the Result; Ctrl-C ends it.");

@@ -47,7 +47,7 @@ class Job {
   bool done_ = false;         // guarded by mutex_
   std::exception_ptr error_;  // written before done_
   std::mutex join_mutex_;
-  std::thread thread_;        // guarded by join_mutex_; last: starts when everything else is there
+  std::thread thread_;  // guarded by join_mutex_; last: starts when everything else is there
 };
 
 }  // namespace hybrid_mesh

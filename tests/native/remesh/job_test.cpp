@@ -200,7 +200,8 @@ TEST(JobRemesh, CanBeCancelledAtAnyTime) {
 TEST(JobRemesh, JobsDoNotDisturbEachOther) {
   const auto points_of = [](int n) {
     auto points = std::make_shared<std::vector<Vec3>>();
-    return std::pair(points, [points, input = bent_sheet(n)](Context& context) { *points = remesh(input, single_threaded(600), context).final_mesh.points; });
+    return std::pair(points,
+                     [points, input = bent_sheet(n)](Context& context) { *points = remesh(input, single_threaded(600), context).final_mesh.points; });
   };
   std::vector<std::vector<Vec3>> alone;
   for (const int n : {12, 16}) {
