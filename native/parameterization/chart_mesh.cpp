@@ -219,22 +219,28 @@ bool ChartMesh::place(int v) {
   mean /= static_cast<double>(n);
   Complex best = mean;
   double most = depth(mean);
-  // Otherwise the deepest point of the kernel: the centre of its largest "cone", found by moving away from the tightest edge.
+  // Otherwise the middle of the kernel: a box around the ring, cut by the line of every edge.
   if (!(most > 0)) {
-    for (std::size_t start = 0; start < n; ++start) {
-      const Complex corner_at = from[start];
-      const Complex before = from[(start + n - 1) % n] - corner_at, after = to[start] - corner_at;
-      const double la = std::abs(before), lb = std::abs(after);
-      if (!(la > 0) || !(lb > 0)) continue;
-      double turn = std::arg(before / after);
-      if (turn < 0) turn += 2 * 3.14159265358979323846;
-      const Complex direction = after / lb * std::polar(1.0, 0.5 * turn);
-      for (double r = 0.5 * std::min(la, lb); r > 1e-4 * std::min(la, lb); r *= 0.5) {
-        const Complex p = corner_at + r * direction;
-        const double d = depth(p);
-        if (d > most) most = d, best = p;
-      }
+    double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
+    for (const Complex& p : from) {
+      left = std::min(left, p.real()), right = std::max(right, p.real());
+      bottom = std::min(bottom, p.imag()), top = std::max(top, p.imag());
     }
+    std::vector<Complex> kernel{{left, bottom}, {right, bottom}, {right, top}, {left, top}}, cut;
+    for (std::size_t i = 0; i < n && !kernel.empty(); ++i) {
+      cut.clear();
+      const Complex edge = to[i] - from[i];
+      for (std::size_t k = 0; k < kernel.size(); ++k) {
+        const Complex &a = kernel[k], &b = kernel[(k + 1) % kernel.size()];
+        const double da = cross(edge, a - from[i]), db = cross(edge, b - from[i]);
+        if (da >= 0) cut.push_back(a);
+        if ((da > 0 && db < 0) || (da < 0 && db > 0)) cut.push_back(a + (b - a) * (da / (da - db)));
+      }
+      kernel.swap(cut);
+    }
+    Complex middle(0, 0);
+    for (const Complex& p : kernel) middle += p / static_cast<double>(kernel.size());
+    if (!kernel.empty() && depth(middle) > most) most = depth(middle), best = middle;
   }
   uv[v] = best;
   return most > 0;

@@ -319,7 +319,7 @@ class Remesher {
     const std::int64_t budget = budget_.vertices;
     const int deepest = options_.levels >= 0 ? options_.levels : 12;
     while (h.depth() < deepest && 8 * h.leaf_counts().faces * 2 < 0.35 * static_cast<double>(budget)) h.refine_uniform(h.depth() + 1);
-    const double start = std::max(0.3, static_cast<double>(h.closed_vertex_count()) / budget);
+    const double start = std::max(0.3, static_cast<double>(vertices_when_closed(h)) / budget);
     const int rounds = 6;
     for (int round = 0; round <= rounds; ++round) {
       const Progress part = progress_.part(0.55 + 0.2 * round / (rounds + 1), 0.55 + 0.2 * (round + 1) / (rounds + 1));
@@ -337,11 +337,17 @@ class Remesher {
       const double fraction = start + (1 - start) * (round + 1.0) / rounds;
       split_worst(error, static_cast<std::int64_t>(fraction * static_cast<double>(budget)), budget, deepest);
     }
+    // By chance no leaf is finer than its neighbours: what closure would have split is split here.
+    if (h.conforming() && vertices_when_closed(h) <= budget && h.depth() < deepest)
+      for (const int leaf : h.leaves()) h.refine(leaf);
     watch_.start("fit");
     result_.final_mesh = h.final_mesh();
     fit(result_.final_mesh, 2, h.depth(), progress_.part(0.75, 0.8));
     watch_.stop();
   }
+
+  // Vertices of the mesh once every leaf is split for closure. (A mesh without hanging nodes needs none, but the next split makes some.)
+  static std::int64_t vertices_when_closed(const HybridMesh& h) { return 2 * (h.leaf_counts().vertices + h.leaf_counts().faces) - h.leaf_counts().euler; }
 
   void split_worst(const std::vector<double>& error, std::int64_t target, std::int64_t budget, int deepest) {
     HybridMesh& h = result_.hierarchy;
@@ -355,16 +361,16 @@ class Remesher {
       if (h.level(leaf) < deepest) queue.push({error[leaf], leaf});
     std::vector<int> refined;
     int refused = 0;
-    while (h.closed_vertex_count() < target && !queue.empty() && refused < 40) {
+    while (vertices_when_closed(h) < target && !queue.empty() && refused < 40) {
       const Entry worst = queue.top();
       queue.pop();
       if (!h.is_leaf(worst.node)) continue;
       refined.clear();
       // Close to the budget a split may reach beyond it by what it drags along: tried on a copy.
-      if (h.closed_vertex_count() > budget - std::max<std::int64_t>(400, budget / 50)) {
+      if (vertices_when_closed(h) > budget - std::max<std::int64_t>(400, budget / 50)) {
         HybridMesh trial = h;
         trial.refine_balanced(worst.node, &refined);
-        if (trial.closed_vertex_count() > budget) {
+        if (vertices_when_closed(trial) > budget) {
           ++refused;
           continue;
         }
