@@ -13,7 +13,7 @@ import mathutils
 import numpy
 
 TILE = 480  # pixels
-SAMPLES = 48
+SAMPLES = 32
 GAP = 1.12  # of the largest extent, between two middles
 TURN = 0.3  # about the vertical, radians
 LINE = 0.0042  # width of the lines, of the object's height

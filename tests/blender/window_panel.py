@@ -42,7 +42,8 @@ def steps():
     stepper.view()["space_data"].overlay.show_wireframes = True
     for level in (len(levels_of(preview)) - 1, 1, 0):
         levels.set_level(preview, level)
-        yield 0.5
+        assert levels.level_of(preview) == level
+        yield 2  # for a software renderer to draw it
         stepper.screenshot(f"panel_level{level}")
     bpy.context.scene.hybrid_mesh.refinement = "ADAPTIVE"
     bpy.context.scene.hybrid_mesh.base = "GIVEN"
