@@ -10,20 +10,20 @@
 namespace hybrid_mesh {
 namespace {
 
-constexpr int kRings = 3;
-
 class ConeMotion {
  public:
   ConeMotion(ChartMesh& charts, const Distortion& density) : c_(charts), relaxation_(charts, density) {}
 
-  bool try_move(int cone) {
-    if (!build_disc(cone)) return false;
+  // Moves the cone where that lowers the energy; with `evict` moves it anyway, if a neighbour can take it.
+  bool try_move(int cone, bool evict) {
+    // Another cone or the boundary may be too near for a large disc.
+    if (!build_disc(cone, 3) && !build_disc(cone, 2)) return false;
     solve();
     const int n = static_cast<int>(inner_);
     int best = 0;
     for (int i = 1; i < n; ++i)
       if (std::abs(solved_[i]) < std::abs(solved_[best])) best = i;
-    if (best == 0) return false;
+    if (best == 0 && !evict) return false;
     // The cone's neighbours, nearest to the wanted place first.
     std::vector<std::pair<double, int>> targets;
     int h = c_.mesh.out[cone];
@@ -33,8 +33,10 @@ class ConeMotion {
       h = c_.mesh.ccw(h);
     } while (h != c_.mesh.out[cone]);
     std::sort(targets.begin(), targets.end());
-    for (std::size_t k = 0; k < std::min<std::size_t>(2, targets.size()); ++k)
-      if (targets[k].first < std::abs(solved_[0]) && hop(cone, targets[k].second)) return true;
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      if (!evict && (k == 2 || targets[k].first >= std::abs(solved_[0]))) break;
+      if (hop(cone, targets[k].second, evict)) return true;
+    }
     return false;
   }
 
@@ -48,15 +50,15 @@ class ConeMotion {
     Complex w;
   };
 
-  // Vertices up to ring kRings (the rim), developed around the cone. False if an inner one is a cone or at the boundary.
-  bool build_disc(int cone) {
+  // Vertices up to ring `rings` (the rim), developed around the cone. False if an inner one is a cone or at the boundary.
+  bool build_disc(int cone, int rings) {
     members_.clear(), index_.clear(), faces_.clear(), pins_.clear(), offsets_.clear();
     quads_ = c_.angle_at(cone) / (0.5 * std::numbers::pi);
     quads_ = std::round(quads_);
     std::vector<int> ring{cone}, next_ring, around;
     members_.emplace_back(cone);
     index_[cone] = 0;
-    for (int r = 1; r <= kRings; ++r) {
+    for (int r = 1; r <= rings; ++r) {
       next_ring.clear();
       for (const int v : ring) {
         if (c_.mesh.is_boundary(v) || (v != cone && c_.kind[v] != ChartMesh::Kind::Free)) return false;
@@ -67,7 +69,7 @@ class ConeMotion {
             next_ring.push_back(w);
           }
       }
-      if (r == kRings) inner_ = members_.size() - next_ring.size();
+      if (r == rings) inner_ = members_.size() - next_ring.size();
       ring.swap(next_ring);
     }
     // Faces with an inner vertex, from the cone's star outwards.
@@ -169,7 +171,7 @@ class ConeMotion {
     return sum;
   }
 
-  bool hop(int cone, int h) {
+  bool hop(int cone, int h, bool at_any_cost) {
     const int target = c_.mesh.to(h), o = c_.mesh.opposite[h];
     const double before = disc_energy();
     std::vector<Complex> uv;
@@ -235,7 +237,7 @@ class ConeMotion {
       // The rim's own windings could have changed with their neighbours.
       for (const int v : all)
         if (c_.movable(v) && !c_.mesh.is_boundary(v) && std::abs(c_.angle_at(v) - 2 * std::numbers::pi) > 0.1) good = false;
-      if (!(disc_energy() < before * (1 - 1e-4))) good = false;
+      if (!at_any_cost && !(disc_energy() < before * (1 - 1e-4))) good = false;
     }
     if (good) return true;
     for (std::size_t i = 0; i < inner_; ++i) c_.uv[members_[i].vertex] = uv[i];
@@ -270,8 +272,10 @@ int move_cones(ChartMesh& charts, const Distortion& density) {
   for (int v = 0; v < static_cast<int>(charts.kind.size()); ++v)
     if (charts.mesh.vertex_alive(v) && charts.kind[v] == ChartMesh::Kind::Cone) cones.push_back(v);
   int moved = 0;
-  for (const int cone : cones) moved += motion.try_move(cone);
+  for (const int cone : cones) moved += motion.try_move(cone, false);
   return moved;
 }
+
+bool evict_cone(ChartMesh& charts, const Distortion& density, int cone) { return ConeMotion(charts, density).try_move(cone, true); }
 
 }  // namespace hybrid_mesh

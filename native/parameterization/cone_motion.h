@@ -9,4 +9,7 @@ namespace hybrid_mesh {
 // the cone, flattened by w = z^(4 / k) for k quads and solved by mean-value coordinates with its rim held: the cone belongs where w = 0. Returns how many moved.
 int move_cones(ChartMesh& charts, const Distortion& density);
 
+// Moves one cone to a neighbouring vertex, the one that costs least of those that can take it. Returns whether there was one.
+bool evict_cone(ChartMesh& charts, const Distortion& density, int cone);
+
 }  // namespace hybrid_mesh

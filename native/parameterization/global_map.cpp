@@ -89,8 +89,8 @@ class MapSmoothing {
       if (!(signed_area > least_determinant * 0.5 * area * c_.scale * c_.scale)) good = false;
       fan += std::arg((b - target) * std::conj(a - target));
     });
-    // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen.
-    return good && (c_.kind[u] != ChartMesh::Kind::Cone || fan < 3);
+    // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen, and u become such a cone.
+    return good && fan < (c_.kind[u] == ChartMesh::Kind::Cone ? 3.0 : 4.0);
   }
 
   void merge_insertions() {
@@ -232,7 +232,16 @@ class MapSmoothing {
         const int h = log_.back();
         log_.pop_back();
         const int v = c_.mesh.from(h);
-        if (!c_.undo_collapse(h)) {
+        bool placed = c_.undo_collapse(h);
+        const int kept = c_.mesh.to(h);
+        for (int tries = 0; tries < 3 && !placed && c_.kind[kept] == ChartMesh::Kind::Cone; ++tries) {
+          // The vertex would come back into a fan of a full turn or more, for which a cone has room: the cone has to give way.
+          c_.collapse(h);
+          const bool evicted = evict_cone(c_, density_, kept);
+          placed = c_.undo_collapse(h);
+          if (!evicted) break;
+        }
+        if (!placed) {
           ++report_.unplaced;
           untangle(v);
         }

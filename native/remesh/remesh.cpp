@@ -205,16 +205,18 @@ class Remesher {
     progress_.stage("map");
     watch_.start("map");
     const std::vector<std::array<Vec2, 3>> corners = map_patches(patches, progress_.part(0.2, 0.25));
-    auto charts = std::make_unique<ChartMesh>(patches, corners);
-    GlobalMapOptions map_options;
-    try {
-      smooth_map(*charts, patches, map_options, progress_.part(0.25, 0.5));
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal) throw;
-      // A vertex of the collapse hierarchy found no place: without the hierarchy the map is found more slowly, but nothing can fail.
+    // Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried, at last none: slower, but nothing can fail.
+    std::unique_ptr<ChartMesh> charts;
+    for (const double vertices_a_quad : {30.0, 90.0, std::numeric_limits<double>::infinity()}) {
       charts = std::make_unique<ChartMesh>(patches, corners);
-      map_options.vertices_a_quad = std::numeric_limits<double>::infinity();
-      smooth_map(*charts, patches, map_options, progress_.part(0.25, 0.5));
+      GlobalMapOptions map_options;
+      map_options.vertices_a_quad = vertices_a_quad;
+      try {
+        smooth_map(*charts, patches, map_options, progress_.part(0.25, 0.5));
+        break;
+      } catch (const Error& e) {
+        if (e.code() != ErrorCode::Internal || std::isinf(vertices_a_quad)) throw;
+      }
     }
     watch_.start("extract");
     std::vector<PatchMap> maps = extract_patch_maps(*charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
@@ -252,7 +254,7 @@ class Remesher {
       const Progress part = progress_.part(0.8 + 0.15 * j / (depth + 1), 0.8 + 0.15 * (j + 1) / (depth + 1));
       const bool last = j == depth;
       QuadMesh mesh = last ? result_.final_mesh : h.level_mesh(j);
-      if (!last) fit(mesh, 2, j, part);
+      if (!last) fit(mesh, 1, j, part);
       h.set_level_positions(j, mesh);
       report_["levels"].push_back(describe_level(j, mesh, part));
     }
@@ -392,7 +394,7 @@ class Remesher {
   Json describe_level(int j, const QuadMesh& mesh, const Progress& progress) {
     const TopologySummary t = summarize_topology(to_soup(mesh));
     DistanceOptions distance;
-    distance.samples = 40000;
+    distance.samples = 30000;
     const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), distance, progress);
     const LevelStretch s = level_stretch(result_.hierarchy, mesh);
     std::vector<double> sorted = s.stretch;
