@@ -283,9 +283,9 @@ class Remesher {
     fit_options.rounds = rounds;
     fit_mesh(mesh, boundary, share, on, fit_options, progress);
     // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
-    fit_options.rounds = 1;
     for (int turn = 0; turn < 2; ++turn) {
       relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
+      fit_options.rounds = turn + 1;
       fit_mesh(mesh, boundary, share, on, fit_options, progress);
     }
   }
