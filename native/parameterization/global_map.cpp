@@ -207,11 +207,10 @@ class MapSmoothing {
 
   void sweep(int count, const std::vector<int>& vertices, const Progress& progress) {
     for (int i = 0; i < count; ++i) {
-      progress.check();
-      if (i % 2 == 0)
-        for (const int v : vertices) stars_.relax(v, false);
-      else
-        for (std::size_t k = vertices.size(); k-- > 0;) stars_.relax(vertices[k], false);
+      for (std::size_t k = 0; k < vertices.size(); ++k) {
+        if (k % 4096 == 0) progress.check();
+        stars_.relax(vertices[i % 2 == 0 ? k : vertices.size() - 1 - k], false);
+      }
     }
   }
 
@@ -231,6 +230,7 @@ class MapSmoothing {
       while (log_.size() > begin) {
         const int h = log_.back();
         log_.pop_back();
+        if (log_.size() % 4096 == 0) progress.check();
         const int v = c_.mesh.from(h);
         bool placed = c_.undo_collapse(h);
         const int kept = c_.mesh.to(h);
@@ -335,6 +335,7 @@ class MapSmoothing {
       matrix.setFromTriplets(entries.begin(), entries.end());
       if (!analyzed) solver.analyzePattern(matrix);
       analyzed = true;
+      progress.check();
       double damping = 0;
       for (int tries = 0; tries < 5; ++tries) {
         solver.factorize(matrix);

@@ -10,7 +10,7 @@ namespace hybrid_mesh {
 
 struct AngleRelaxationOptions {
   int sweeps = 20;
-  double enough = 0.75;   // quads whose corners all have a sine of at least this are left alone
+  double enough = 0.85;   // quads whose corners all have a sine of at least this are left alone
   double flatness = 0.9;  // a vertex moves only where the normals of its quads are within this cosine of their mean
 };
 

@@ -281,10 +281,12 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
       samples[i].face = cover.face_of[t];
       anchors[i] = {cover.faces[t], c.weights};
     });
+    progress.check();
     for (Eigen::Matrix3d& b : matrix.block) b.setZero();
     std::vector<Vec3> right(n, Vec3::Zero());
     const double a = options.tangential;
     for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (i % 65536 == 0) progress.check();
       const Vec3& normal = samples[i].normal;
       const double weight = samples[i].weight;
       const Eigen::Matrix3d metric = weight * (a * Eigen::Matrix3d::Identity() + (1 - a) * normal * normal.transpose());

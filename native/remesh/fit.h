@@ -18,7 +18,7 @@ struct FitSample {
 struct FitOptions {
   int rounds = 4;                 // each finds closest points anew
   double tangential = 0.01;       // weight of the distance along the surface against that along its normal
-  double smoothness = 0.02;       // weight of the Laplacian's tangential part, which keeps quads from folding
+  double smoothness = 0.03;       // weight of the Laplacian's tangential part, which keeps quads from folding
   int iterations = 60;            // of conjugate gradients a round, at most
 };
 
