@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace hybrid_mesh {
 namespace {
@@ -121,8 +122,10 @@ class AngleRelaxation {
     Vec3 d = step * (x * (-(hy * gx - h * gy) / determinant) + y * (-(hx * gy - h * gx) / determinant));
     const double reach = 0.5 * shortest;
     if (d.norm() > reach) d *= reach / d.norm();
+    home_.insert({v, {p, options_.reach * shortest}});
+    const auto& [start, allowed] = home_.at(v);
     for (double t = 1; t > 0.05; t *= 0.5)
-      if (energy(v, p + t * d) < here - 1e-4) {
+      if ((p + t * d - start).norm() <= allowed && energy(v, p + t * d) < here - 1e-4) {
         mesh_.points[v] = p + t * d;
         return true;
       }
@@ -133,6 +136,7 @@ class AngleRelaxation {
   const std::vector<char>& fixed_;
   const AngleRelaxationOptions& options_;
   std::vector<int> row_, faces_;
+  std::unordered_map<int, std::pair<Vec3, double>> home_;  // per vertex that moved: where it was at the start, and how far it may go
 };
 
 }  // namespace

@@ -12,6 +12,7 @@ struct AngleRelaxationOptions {
   int sweeps = 20;
   double enough = 0.85;   // quads whose corners all have a sine of at least this are left alone
   double flatness = 0.9;  // a vertex moves only where the normals of its quads are within this cosine of their mean
+  double reach = 100;     // how far a vertex may move in all, in lengths of its shortest edge at the start
 };
 
 // Moves vertices along the surface, in the tangent plane of the mesh, so that the corners of its quads come nearer to right angles; lengths are free. Vertices with `fixed` set

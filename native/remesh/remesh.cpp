@@ -288,6 +288,12 @@ class Remesher {
       fit_options.rounds = turn + 1;
       fit_mesh(mesh, boundary, share, on, fit_options, progress);
     }
+    // What is still folded is unfolded even where the surface bends: a few quads, at the cost of a little distance.
+    AngleRelaxationOptions unfold;
+    unfold.enough = 0.05;
+    unfold.flatness = -1;
+    unfold.reach = 0.3;
+    relax_angles(mesh, boundary, unfold, progress);
   }
 
   double measured_l2(const QuadMesh& mesh, std::int64_t samples) {
