@@ -254,7 +254,13 @@ class Remesher {
       const Progress part = progress_.part(0.8 + 0.15 * j / (depth + 1), 0.8 + 0.15 * (j + 1) / (depth + 1));
       const bool last = j == depth;
       QuadMesh mesh = last ? result_.final_mesh : h.level_mesh(j);
-      if (!last) fit(mesh, 1, j, part);
+      if (!last) {
+        // Quads much larger than the shape's features: held closer to where the map puts them, or corners overshoot tips.
+        FitOptions coarse;
+        coarse.rounds = 1;
+        coarse.tangential = 0.1;
+        fit(mesh, coarse, j, part);
+      }
       h.set_level_positions(j, mesh);
       report_["levels"].push_back(describe_level(j, mesh, part));
     }
@@ -274,13 +280,17 @@ class Remesher {
     return share;
   }
 
-  void fit(QuadMesh& mesh, int rounds, int level, const Progress& progress) {
+  static FitOptions final_fit() {
+    FitOptions options;
+    options.rounds = 2;
+    return options;
+  }
+
+  void fit(QuadMesh& mesh, FitOptions fit_options, int level, const Progress& progress) {
     const SurfaceSamples samples(result_.hierarchy, samples_for(mesh.points.size()), level);
     std::vector<FitSample> on = samples.on(result_.hierarchy, mesh);
-    FitOptions fit_options;
     const std::vector<char> boundary = boundary_vertices(mesh);
     const std::vector<double> share = parameter_shares(mesh);
-    fit_options.rounds = rounds;
     fit_mesh(mesh, boundary, share, on, fit_options, progress);
     // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
     for (int turn = 0; turn < 2; ++turn) {
@@ -311,7 +321,7 @@ class Remesher {
     for (;;) {
       h.refine_uniform(levels);
       result_.final_mesh = h.level_mesh(levels);
-      fit(result_.final_mesh, 2, levels, progress_.part(0.6, 0.8));
+      fit(result_.final_mesh, final_fit(), levels, progress_.part(0.6, 0.8));
       if (!(options_.error > 0) || options_.vertices > 0 || options_.levels >= 0) break;
       if (measured_l2(result_.final_mesh, 50000) <= options_.error || levels >= 9) break;
       ++levels;
@@ -350,7 +360,7 @@ class Remesher {
       for (const int leaf : h.leaves()) h.refine(leaf);
     watch_.start("fit");
     result_.final_mesh = h.final_mesh();
-    fit(result_.final_mesh, 2, h.depth(), progress_.part(0.75, 0.8));
+    fit(result_.final_mesh, final_fit(), h.depth(), progress_.part(0.75, 0.8));
     watch_.stop();
   }
 
