@@ -293,7 +293,7 @@ class Remesher {
     const std::vector<double> share = parameter_shares(mesh);
     fit_mesh(mesh, boundary, share, on, fit_options, progress);
     // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
-    for (int turn = 0; turn < 2; ++turn) {
+    for (int turn = 0; turn < 3; ++turn) {
       relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
       fit_options.rounds = turn + 1;
       fit_mesh(mesh, boundary, share, on, fit_options, progress);
