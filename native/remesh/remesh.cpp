@@ -259,7 +259,7 @@ class Remesher {
         FitOptions coarse;
         coarse.rounds = 1;
         coarse.tangential = 0.1;
-        fit(mesh, coarse, j, part);
+        fit(mesh, coarse, 1, j, part);
       }
       h.set_level_positions(j, mesh);
       report_["levels"].push_back(describe_level(j, mesh, part));
@@ -286,14 +286,14 @@ class Remesher {
     return options;
   }
 
-  void fit(QuadMesh& mesh, FitOptions fit_options, int level, const Progress& progress) {
+  void fit(QuadMesh& mesh, FitOptions fit_options, int turns, int level, const Progress& progress) {
     const SurfaceSamples samples(result_.hierarchy, samples_for(mesh.points.size()), level);
     std::vector<FitSample> on = samples.on(result_.hierarchy, mesh);
     const std::vector<char> boundary = boundary_vertices(mesh);
     const std::vector<double> share = parameter_shares(mesh);
     fit_mesh(mesh, boundary, share, on, fit_options, progress);
     // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
-    for (int turn = 0; turn < 3; ++turn) {
+    for (int turn = 0; turn < turns; ++turn) {
       relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
       fit_options.rounds = turn + 1;
       fit_mesh(mesh, boundary, share, on, fit_options, progress);
@@ -321,7 +321,7 @@ class Remesher {
     for (;;) {
       h.refine_uniform(levels);
       result_.final_mesh = h.level_mesh(levels);
-      fit(result_.final_mesh, final_fit(), levels, progress_.part(0.6, 0.8));
+      fit(result_.final_mesh, final_fit(), 3, levels, progress_.part(0.6, 0.8));
       if (!(options_.error > 0) || options_.vertices > 0 || options_.levels >= 0) break;
       if (measured_l2(result_.final_mesh, 50000) <= options_.error || levels >= 9) break;
       ++levels;
@@ -360,7 +360,7 @@ class Remesher {
       for (const int leaf : h.leaves()) h.refine(leaf);
     watch_.start("fit");
     result_.final_mesh = h.final_mesh();
-    fit(result_.final_mesh, final_fit(), h.depth(), progress_.part(0.75, 0.8));
+    fit(result_.final_mesh, final_fit(), 3, h.depth(), progress_.part(0.75, 0.8));
     watch_.stop();
   }
 
