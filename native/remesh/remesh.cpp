@@ -321,7 +321,7 @@ class Remesher {
     for (;;) {
       h.refine_uniform(levels);
       result_.final_mesh = h.level_mesh(levels);
-      fit(result_.final_mesh, final_fit(), 3, levels, progress_.part(0.6, 0.8));
+      fit(result_.final_mesh, final_fit(), 2, levels, progress_.part(0.6, 0.8));
       if (!(options_.error > 0) || options_.vertices > 0 || options_.levels >= 0) break;
       if (measured_l2(result_.final_mesh, 50000) <= options_.error || levels >= 9) break;
       ++levels;
@@ -360,7 +360,7 @@ class Remesher {
       for (const int leaf : h.leaves()) h.refine(leaf);
     watch_.start("fit");
     result_.final_mesh = h.final_mesh();
-    fit(result_.final_mesh, final_fit(), 3, h.depth(), progress_.part(0.75, 0.8));
+    fit(result_.final_mesh, final_fit(), 2, h.depth(), progress_.part(0.75, 0.8));
     watch_.stop();
   }
 
