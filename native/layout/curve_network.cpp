@@ -376,8 +376,7 @@ void CurveNetwork::undo_flip(int h) {
   simplify_chords();
 }
 
-// Splits a convex polygon with corners on the sides of one triangle into triangles without any that lies along one side. `line(i, j, k)`: do the three lie on
-// one side?
+// Splits a convex polygon with corners on the sides of one triangle into triangles none of which lies along one side.
 class PolygonSplitter {
  public:
   struct Corner {

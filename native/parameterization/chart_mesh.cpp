@@ -185,8 +185,7 @@ double ChartMesh::angle_at(int v) const {
 }
 
 bool ChartMesh::place(int v) {
-  thread_local std::vector<Complex> from, to;
-  from.clear(), to.clear();
+  std::vector<Complex> from, to;
   for_star(v, [&](int, const Complex& a, const Complex& b) {
     from.push_back(a);
     to.push_back(b);

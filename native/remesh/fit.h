@@ -24,8 +24,8 @@ struct FitOptions {
 
 // Moves the vertices of a polygon mesh so that the weighted mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay. Samples' faces are updated to
 // those that hold their closest points.
-// Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
 // `share` is the part of the surface that each vertex is meant to stand for, in any unit (a quad's parameter area): the regulariser counts as much there; empty means equal shares.
+// Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
 void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress);
 
 // Squared distance of every sample to the mesh, by walking from its face; updates the faces.
