@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "base/context.h"
+#include "layout/decimation.h"
+#include "layout/quad_layout.h"
 #include "parameterization/patched_surface.h"
 
 namespace hybrid_mesh {
@@ -14,8 +17,31 @@ struct BaseDomainOptions {
   std::uint64_t seed = 1;
 };
 
-// Cuts a surface into quadrilateral patches, by decimating it to the base domain and pulling the base's edges back. The size is not exceeded unless the surface's topology asks for more.
-// `surface` is scaled to a unit bounding-box diagonal. Any genus, components, boundary loops.
-PatchedSurface make_base_domain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress);
+// A surface, or a coarser version of it, cut into the patches of a base domain.
+struct CutSurface {
+  TriangleSurface coarse;        // source_face: face of the surface
+  PatchedSurface patches;        // of the coarse surface: points and faces name those of it
+  EditMesh collapsed;            // the surface's mesh, as coarse as the coarse surface
+  std::vector<int> log;          // the half-edge collapses that made it so; empty if the coarse surface is the surface
+  std::vector<int> vertex;       // per point of the coarse surface: that of the surface
+};
+
+// A quadrilateral base domain for a surface, found by decimating it. The size is not exceeded unless the surface's topology asks for more. Any genus, components, boundary
+// loops. Keeps a reference to the surface, which is scaled to a unit bounding-box diagonal.
+class BaseDomain {
+ public:
+  BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress);
+
+  int quads() const { return static_cast<int>(layout_.quads.size()); }
+  int boundary_sides() const;
+  // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts it along them.
+  CutSurface cut(double vertices_a_quad, const Progress& progress) const;
+
+ private:
+  const TriangleSurface& surface_;
+  EditMesh decimated_;
+  std::vector<MeshEdit> log_;
+  QuadLayout layout_;
+};
 
 }  // namespace hybrid_mesh

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/curve_network.h"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -24,8 +27,12 @@ class CurveNetwork {
       : surface_(surface), points_(surface.points), mesh_(mesh), layout_(layout), on_edge_(mesh.edge_count), along_edge_(mesh.edge_count, -1) {
     first_.assign(layout.curves.size(), -1);
     last_.assign(layout.curves.size(), -1);
-    for (std::size_t c = 0; c < layout.curves.size(); ++c) along_edge_[layout.curves[c].edge] = static_cast<int>(c);
+    for (std::size_t c = 0; c < layout.curves.size(); ++c)
+      if (layout.curves[c].edge >= 0) along_edge_[layout.curves[c].edge] = static_cast<int>(c);
   }
+
+  // Lays the curves on straight segments in the plane, where the mesh's vertices lie at `uv`.
+  void draw(const std::vector<Vec2>& uv);
 
   void undo(const MeshEdit& edit) {
     if (edit.kind == MeshEdit::Kind::Collapse)
@@ -376,6 +383,65 @@ void CurveNetwork::undo_flip(int h) {
   simplify_chords();
 }
 
+// Where segment (a, b) crosses edge (p, q), as the fraction from p on: exactly, for comparisons.
+boost::multiprecision::cpp_rational exact_crossing(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
+  using Rational = boost::multiprecision::cpp_rational;
+  const Rational dx = Rational(b.x()) - Rational(a.x()), dy = Rational(b.y()) - Rational(a.y());
+  const auto side = [&](const Vec2& x) { return Rational(dx * (Rational(x.y()) - Rational(a.y())) - dy * (Rational(x.x()) - Rational(a.x()))); };
+  const Rational sp = side(p), sq = side(q);
+  return sp / (sp - sq);
+}
+
+void CurveNetwork::draw(const std::vector<Vec2>& uv) {
+  const auto point = [&](int v) { return CGAL::Exact_predicates_inexact_constructions_kernel::Point_2(uv[v].x(), uv[v].y()); };
+  for (int c = 0; c < static_cast<int>(layout_.curves.size()); ++c) {
+    const int a = layout_.curves[c].start, b = layout_.curves[c].end;
+    int direct = mesh_.find(a, b);
+    if (direct < 0) direct = mesh_.find(b, a);
+    if (direct >= 0) {
+      along_edge_[mesh_.edge[direct]] = c;
+      continue;
+    }
+    // A vertex on the segment counts as left of it, for this segment throughout.
+    const auto is_right = [&](int v) { return CGAL::orientation(point(a), point(b), point(v)) == CGAL::RIGHT_TURN; };
+    int h = mesh_.out[a];
+    while (!(is_right(mesh_.to(h)) && !is_right(mesh_.apex(h)))) {
+      h = mesh_.ccw(h);
+      if (h < 0 || h == mesh_.out[a]) throw Error(ErrorCode::Internal, "a segment of a layout leaves its disk");
+    }
+    int edge = EditMesh::next(h), previous = -1;  // from its right end to its left one
+    for (;;) {
+      const int p = mesh_.from(edge), q = mesh_.to(edge);
+      const Vec2 d = uv[b] - uv[a], x = uv[p] - uv[a], y = uv[q] - uv[a];
+      const double sp = d.x() * x.y() - d.y() * x.x(), sq = d.x() * y.y() - d.y() * y.x();
+      const double t = sq > sp ? std::clamp(sp / (sp - sq), 0.0, 1.0) : 0.5;
+      previous = place({c, 0, 0, -1, -1}, previous, mesh_.edge[edge], p, q, t, false);
+      on_edge_[mesh_.edge[edge]].push_back(previous);
+      const int o = mesh_.opposite[edge];
+      if (o < 0) throw Error(ErrorCode::Internal, "a segment of a layout leaves its disk");
+      const int apex = mesh_.apex(o);
+      if (apex == b) break;
+      edge = is_right(apex) ? EditMesh::prev(o) : EditMesh::next(o);
+    }
+  }
+  std::vector<double> parameters;
+  for (std::vector<int>& list : on_edge_) {
+    if (list.empty()) continue;
+    std::sort(list.begin(), list.end(), [&](int i, int j) {
+      const Crossing &x = crossings_[i], &y = crossings_[j];
+      if (std::abs(x.t - y.t) > 1e-9) return x.t < y.t;
+      const auto exact = [&](const Crossing& z) {
+        return exact_crossing(uv[layout_.curves[z.curve].start], uv[layout_.curves[z.curve].end], uv[z.low], uv[z.high]);
+      };
+      return exact(x) < exact(y);
+    });
+    parameters.clear();
+    for (const int n : list) parameters.push_back(std::clamp(crossings_[n].t, 0.02, 0.98));
+    spread(parameters);
+    for (std::size_t k = 0; k < list.size(); ++k) crossings_[list[k]].t = parameters[k];
+  }
+}
+
 // Splits a convex polygon with corners on the sides of one triangle into triangles none of which lies along one side.
 class PolygonSplitter {
  public:
@@ -644,6 +710,13 @@ PatchedSurface cut_along_layout(const TriangleSurface& surface, EditMesh& mesh, 
   PatchedSurface result = network.cut();
   progress(1);
   return result;
+}
+
+PatchedSurface cut_along_segments(const TriangleSurface& disk, const std::vector<Vec2>& uv, const QuadLayout& layout) {
+  EditMesh mesh(disk);
+  CurveNetwork network(disk, mesh, layout);
+  network.draw(uv);
+  return network.cut();
 }
 
 }  // namespace hybrid_mesh

@@ -93,6 +93,39 @@ ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array
   }
 }
 
+ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area, const std::vector<int>& vertex_of)
+    : mesh(collapsed), points(fine_points), scale(charts.scale) {
+  const std::size_t halves = collapsed.origin.size();
+  uv.assign(points.size(), Complex(0, 0));
+  kind.assign(points.size(), Kind::Free);
+  chart.assign(halves / 3, -1);
+  corner.resize(halves);
+  gluing.resize(halves);
+  double area = 0;
+  for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f)
+    if (charts.mesh.alive[f]) {
+      const Vec3& a = charts.points[charts.mesh.origin[3 * f]];
+      area += 0.5 * (charts.points[charts.mesh.origin[3 * f + 1]] - a).cross(charts.points[charts.mesh.origin[3 * f + 2]] - a).norm();
+    }
+  scale *= std::sqrt(area / fine_area);
+  if (charts.mesh.face_count != collapsed.face_count) throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
+  for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f) {
+    if (!charts.mesh.alive[f]) continue;
+    const int h = mesh.find(vertex_of[charts.mesh.from(3 * f)], vertex_of[charts.mesh.to(3 * f)]);
+    if (h < 0 || mesh.apex(h) != vertex_of[charts.mesh.apex(3 * f)]) throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
+    chart[h / 3] = charts.chart[f];
+    for (int i = 0, g = h; i < 3; ++i, g = EditMesh::next(g)) {
+      corner[g] = charts.corner[3 * f + i];
+      gluing[g] = charts.gluing[3 * f + i];
+    }
+  }
+  for (int v = 0; v < static_cast<int>(charts.points.size()); ++v)
+    if (charts.mesh.vertex_alive(v)) {
+      uv[vertex_of[v]] = charts.uv[v];
+      kind[vertex_of[v]] = charts.kind[v];
+    }
+}
+
 FlatTriangle ChartMesh::flat(int f) const { return flatten(points[mesh.origin[3 * f]], points[mesh.origin[3 * f + 1]], points[mesh.origin[3 * f + 2]], scale); }
 
 double ChartMesh::determinant(int f) const {

@@ -44,6 +44,10 @@ class ChartMesh {
   // From patches mapped to unit squares, (u, v) a face's corner.
   ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners);
 
+  // The same charts over another mesh with the same triangles: one that was collapsed from a finer surface of area `fine_area`, whose points are `fine_points`. `vertex_of`: per vertex
+  // of `charts` that is alive its vertex there. What was collapsed comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
+  ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area, const std::vector<int>& vertex_of);
+
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
   FlatTriangle flat(int f) const;

@@ -12,32 +12,33 @@ namespace {
 
 class ConeMotion {
  public:
-  ConeMotion(ChartMesh& charts, const Distortion& density) : c_(charts), relaxation_(charts, density) {}
+  ConeMotion(ChartMesh& charts, const Distortion& density, const std::vector<char>& allowed) : c_(charts), relaxation_(charts, density), allowed_(allowed) {}
 
-  // Moves the cone where that lowers the energy; with `evict` moves it anyway, if a neighbour can take it.
-  bool try_move(int cone, bool evict) {
+  // Moves the cone where that lowers the energy; with `evict` moves it anyway, if a neighbour can take it. Returns the vertex that it moved to, or -1.
+  int try_move(int cone, bool evict) {
     // Another cone or the boundary may be too near for a large disc.
-    if (!build_disc(cone, 3) && !build_disc(cone, 2)) return false;
+    if (!build_disc(cone, 3) && !build_disc(cone, 2)) return -1;
     solve();
     const int n = static_cast<int>(inner_);
     int best = 0;
     for (int i = 1; i < n; ++i)
       if (std::abs(solved_[i]) < std::abs(solved_[best])) best = i;
-    if (best == 0 && !evict) return false;
+    if (best == 0 && !evict) return -1;
     // The cone's neighbours, nearest to the wanted place first.
     std::vector<std::pair<double, int>> targets;
     int h = c_.mesh.out[cone];
     do {
       const int w = c_.mesh.to(h), i = index_.at(w);
-      if (c_.kind[w] == ChartMesh::Kind::Free && i < n) targets.push_back({std::abs(solved_[i]), h});
+      if (c_.kind[w] == ChartMesh::Kind::Free && i < n && (allowed_.empty() || allowed_[w])) targets.push_back({std::abs(solved_[i]), h});
       h = c_.mesh.ccw(h);
     } while (h != c_.mesh.out[cone]);
     std::sort(targets.begin(), targets.end());
     for (std::size_t k = 0; k < targets.size(); ++k) {
       if (!evict && (k == 2 || targets[k].first >= std::abs(solved_[0]))) break;
-      if (hop(cone, targets[k].second, evict)) return true;
+      const int target = c_.mesh.to(targets[k].second);
+      if (hop(cone, targets[k].second, evict)) return target;
     }
-    return false;
+    return -1;
   }
 
  private:
@@ -254,6 +255,7 @@ class ConeMotion {
 
   ChartMesh& c_;
   StarRelaxation relaxation_;
+  const std::vector<char>& allowed_;
   std::vector<Member> members_;  // the cone, then ring by ring
   std::unordered_map<int, int> index_;
   std::size_t inner_ = 0;        // members before the rim
@@ -266,16 +268,16 @@ class ConeMotion {
 
 }  // namespace
 
-int move_cones(ChartMesh& charts, const Distortion& density) {
-  ConeMotion motion(charts, density);
+int move_cones(ChartMesh& charts, const Distortion& density, const std::vector<char>& allowed) {
+  ConeMotion motion(charts, density, allowed);
   std::vector<int> cones;
   for (int v = 0; v < static_cast<int>(charts.kind.size()); ++v)
     if (charts.mesh.vertex_alive(v) && charts.kind[v] == ChartMesh::Kind::Cone) cones.push_back(v);
   int moved = 0;
-  for (const int cone : cones) moved += motion.try_move(cone, false);
+  for (const int cone : cones) moved += motion.try_move(cone, false) >= 0;
   return moved;
 }
 
-bool evict_cone(ChartMesh& charts, const Distortion& density, int cone) { return ConeMotion(charts, density).try_move(cone, true); }
+int evict_cone(ChartMesh& charts, const Distortion& density, int cone, const std::vector<char>& allowed) { return ConeMotion(charts, density, allowed).try_move(cone, true); }
 
 }  // namespace hybrid_mesh

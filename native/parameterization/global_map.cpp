@@ -18,28 +18,63 @@ double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - 
 
 class MapSmoothing {
  public:
-  MapSmoothing(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options)
-      : c_(charts), surface_(surface), options_(options), density_{options.theta}, stars_(charts, density_) {}
+  MapSmoothing(ChartMesh& charts, const GlobalMapOptions& options) : c_(charts), options_(options), density_{options.theta}, stars_(charts, density_) {}
 
-  GlobalMapReport run(const Progress& progress) {
+  GlobalMapReport smooth(const PatchedSurface& surface, const Progress& progress) {
     progress.check();
-    merge_insertions();
+    find_original(surface);
+    merge_insertions(surface, 0.01);
     progress(0.1);
     relax_bad_stars(0.02, 30, progress.part(0.1, 0.2));
     report_.energy_before = mean_energy();
-    const int target = static_cast<int>(std::min(options_.vertices_a_quad * surface_.patch_count(), 2e9));
+    const int target = static_cast<int>(std::min(options_.vertices_a_quad * surface.patch_count(), 2e9));
     const std::vector<std::size_t> levels = collapse(target);
     progress(0.3);
     report_.coarse_vertices = c_.mesh.vertex_count;
     newton(options_.newton_steps, progress.part(0.3, 0.45));
     for (int round = 0; round < options_.cone_rounds; ++round) {
-      const int moved = move_cones(c_, density_);
+      const int moved = move_cones(c_, density_, original_);
       report_.cone_moves += moved;
       if (moved == 0) break;
       newton(2, progress.part(0.45, 0.6));
     }
     report_.energy_coarse = mean_energy();
     refine(levels, progress.part(0.6, 1));
+    report_.energy = mean_energy();
+    return report_;
+  }
+
+  // Merges every inserted point; see uncut_map().
+  std::vector<int> uncut(PatchedSurface surface, const Progress& progress) {
+    progress.check();
+    find_original(surface);
+    merge_insertions(surface, 0.01);
+    for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+      if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Cone && is_inserted(surface, v)) settle(surface, v);
+    // Triangles without area may come in between: what is left in the end are the triangles that were cut.
+    merge_insertions(surface, 0.01);
+    merge_insertions(surface, 1e-4, -1);
+    merge_by_force(surface, progress);
+    relax_bad_stars(0.02, 10, progress);
+    progress(1);
+    std::vector<int> point(c_.points.size(), -1);
+    for (std::size_t v = 0; v < point.size(); ++v)
+      if (c_.mesh.vertex_alive(static_cast<int>(v))) point[v] = surface.source[v].vertices[0];
+    return point;
+  }
+
+  GlobalMapReport carry(const std::vector<int>& log, const Progress& progress) {
+    log_ = log;
+    // A sweep whenever the mesh has grown by a fifth.
+    std::vector<std::size_t> levels;
+    double vertices = c_.mesh.vertex_count;
+    const double all = vertices + static_cast<double>(log.size());
+    while (vertices < all) {
+      levels.push_back(static_cast<std::size_t>(all - vertices));
+      vertices *= 1.2;
+    }
+    std::reverse(levels.begin(), levels.end());
+    refine(levels, progress);
     report_.energy = mean_energy();
     return report_;
   }
@@ -59,14 +94,19 @@ class MapSmoothing {
   }
 
   // --- merging the points that cutting inserted --------------------------------------------------------------------------------
-  // A point inside an edge of the repaired surface goes to a neighbour on the same edge: the surface stays the same set of points.
-  bool merges_along_edge(int h) const {
-    const PointSource& p = surface_.source[c_.mesh.from(h)];
-    if (p.vertices[1] < 0 || p.vertices[2] >= 0) return false;
-    const PointSource& q = surface_.source[c_.mesh.to(h)];
-    if (q.vertices[2] >= 0) return false;
-    for (int i = 0; i < 2; ++i)
-      if (q.vertices[i] >= 0 && q.vertices[i] != p.vertices[0] && q.vertices[i] != p.vertices[1]) return false;
+  // Cones keep to points of the surface that was cut, so that inserted ones can be merged away.
+  void find_original(const PatchedSurface& surface) {
+    original_.resize(c_.points.size());
+    for (std::size_t v = 0; v < original_.size(); ++v) original_[v] = !is_inserted(surface, static_cast<int>(v));
+  }
+  static bool is_inserted(const PatchedSurface& surface, int v) { return surface.source[v].vertices[1] >= 0; }
+
+  // A point inside an edge or a face of the surface that was cut goes to a neighbour on the same edge or face: the surface stays the same set of points.
+  bool merges_in_place(const PatchedSurface& surface, int h) const {
+    const PointSource& p = surface.source[c_.mesh.from(h)];
+    const PointSource& q = surface.source[c_.mesh.to(h)];
+    for (const int w : q.vertices)
+      if (w >= 0 && std::find(p.vertices.begin(), p.vertices.end(), w) == p.vertices.end()) return false;
     return true;
   }
 
@@ -93,10 +133,10 @@ class MapSmoothing {
     return good && fan < (c_.kind[u] == ChartMesh::Kind::Cone ? 3.0 : 4.0);
   }
 
-  void merge_insertions() {
+  void merge_insertions(const PatchedSurface& surface, double least_determinant, double least_shape = 1e-6) {
     std::vector<int> inserted;
     for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-      if (c_.mesh.vertex_alive(v) && surface_.source[v].vertices[1] >= 0 && surface_.source[v].vertices[2] < 0) inserted.push_back(v);
+      if (c_.mesh.vertex_alive(v) && is_inserted(surface, v)) inserted.push_back(v);
     for (int pass = 0; pass < 6 && !inserted.empty(); ++pass) {
       std::vector<int> left;
       for (const int v : inserted) {
@@ -105,7 +145,7 @@ class MapSmoothing {
         int h = c_.mesh.out[v];
         do {
           const double l = (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm();
-          if (merges_along_edge(h) && l < shortest && c_.can_collapse(h) && collapse_keeps_map(h, 0.01, 1e-6)) shortest = l, best = h;
+          if (l < shortest && merges_in_place(surface, h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape)) shortest = l, best = h;
           if (c_.mesh.is_boundary(v)) break;
           h = c_.mesh.ccw(h);
         } while (h >= 0 && h != c_.mesh.out[v]);
@@ -117,6 +157,120 @@ class MapSmoothing {
       if (left.size() == inserted.size()) break;
       inserted = std::move(left);
     }
+  }
+
+  // A cone at an inserted point takes the place of a neighbour, a point of the surface: that is merged into it, and its name and place on the surface go over.
+  void settle(PatchedSurface& surface, int cone) {
+    if (!is_inserted(surface, cone)) return;
+    std::vector<std::pair<double, int>> halves;
+    int h = c_.mesh.out[cone];
+    do {
+      const int to_cone = c_.mesh.opposite[h];
+      const int w = c_.mesh.to(h);
+      if (to_cone >= 0 && !is_inserted(surface, w) && c_.kind[w] == ChartMesh::Kind::Free && merges_in_place(surface, h) && c_.can_collapse(to_cone))
+        halves.push_back({-least_determinant_after(to_cone), to_cone});
+      h = c_.mesh.ccw(h);
+    } while (h != c_.mesh.out[cone]);
+    std::sort(halves.begin(), halves.end());
+    for (const auto& [cost, half] : halves) {
+      const int w = c_.mesh.from(half);
+      std::vector<int> region{cone};
+      const std::vector<Complex> before = c_.uv;
+      const int seen_from = prev(half);
+      const Complex place = c_.corner[seen_from].back(c_.at(half));
+      c_.collapse(half);
+      grow(region, 1);
+      for (int rings = 0; rings < 3; ++rings) {
+        if (rings > 0) grow(region, 1);
+        if (!stars_.unfold(region)) continue;
+        c_.points[cone] = c_.points[w];
+        surface.source[cone] = surface.source[w];
+        original_[cone] = 1;
+        return;
+      }
+      c_.uv = before;
+      c_.undo_collapse(half);
+      if (c_.kind[c_.mesh.origin[seen_from]] == ChartMesh::Kind::Cone) break;
+      c_.uv[w] = c_.corner[seen_from](place);
+    }
+    const int next = evict_cone(c_, density_, cone, original_);
+    if (next < 0) throw Error(ErrorCode::Internal, "an irregular node of the base cannot be moved to a vertex");
+  }
+
+  // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones near it, which may ask a triangle for an
+  // angle that none can have, give way.
+  void merge_by_force(const PatchedSurface& surface, const Progress& progress) {
+    for (int pass = 0; pass < 8; ++pass) {
+      progress.check();
+      std::vector<int> left;
+      for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+        if (c_.mesh.vertex_alive(v) && is_inserted(surface, v) && !unfolds_when_merged(surface, v)) left.push_back(v);
+      if (left.empty()) return;
+      for (const int v : left) {
+        std::vector<int> region{v};
+        grow(region, pass < 2 ? 1 : 2);
+        for (const int w : region)
+          if (c_.kind[w] == ChartMesh::Kind::Cone) evict_cone(c_, density_, w, original_);
+        grow(region, 1);
+        for (int sweep = 0; sweep < 6; ++sweep)
+          for (const int w : region)
+            if (c_.movable(w)) stars_.relax(w, true);
+      }
+      merge_insertions(surface, 1e-4, -1);
+    }
+    throw Error(ErrorCode::Internal, "a cut of the surface cannot be undone in the map");
+  }
+
+  void grow(std::vector<int>& region, int rings) const {
+    std::vector<int> ring;
+    for (; rings > 0; --rings) {
+      const std::vector<int> seed = region;
+      for (const int w : seed) {
+        c_.mesh.ring(w, ring);
+        for (const int x : ring)
+          if (std::find(region.begin(), region.end(), x) == region.end()) region.push_back(x);
+      }
+    }
+  }
+
+  bool unfolds_when_merged(const PatchedSurface& surface, int v) {
+    std::vector<std::pair<double, int>> halves;
+    int h = c_.mesh.out[v];
+    do {
+      if (merges_in_place(surface, h) && c_.can_collapse(h)) halves.push_back({-least_determinant_after(h), h});
+      if (c_.mesh.is_boundary(v)) break;
+      h = c_.mesh.ccw(h);
+    } while (h >= 0 && h != c_.mesh.out[v]);
+    std::sort(halves.begin(), halves.end());
+    for (const auto& [cost, half] : halves) {
+      std::vector<int> region{v};
+      grow(region, 1);
+      region.erase(region.begin());
+      const std::vector<Complex> before = c_.uv;
+      // Where v is, seen from another corner of its face: its own frame is lost.
+      const int seen_from = c_.kind[c_.mesh.to(half)] != ChartMesh::Kind::Cone ? next(half) : prev(half);
+      const Complex place = c_.corner[seen_from].back(c_.at(half));
+      const bool known = c_.kind[c_.mesh.origin[seen_from]] != ChartMesh::Kind::Cone;
+      c_.collapse(half);
+      for (int rings = 0; rings < 3; ++rings) {
+        if (rings > 0) grow(region, 1);
+        if (stars_.unfold(region)) return true;
+      }
+      c_.uv = before;
+      const bool placed = c_.undo_collapse(half);
+      if (known && !c_.mesh.is_boundary(v)) c_.uv[v] = c_.corner[seen_from](place);
+      if (!placed && !known) break;
+    }
+    return false;
+  }
+  double least_determinant_after(int h) const {
+    const int v = c_.mesh.from(h), u = c_.mesh.to(h);
+    const Complex target = c_.corner[h].back(c_.at(next(h)));
+    double least = 1e300;
+    c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
+      if (c_.mesh.to(g) != u && c_.mesh.apex(g) != u) least = std::min(least, cross(b - a, target - a));
+    });
+    return least;
   }
 
   // Badly squeezed triangles first: a global line search would stall on them.
@@ -222,11 +376,9 @@ class MapSmoothing {
   }
 
   void refine(const std::vector<std::size_t>& levels, const Progress& progress) {
-    std::vector<int> fresh;
     int swept = c_.mesh.vertex_count;
     for (std::size_t level = levels.size(); level-- > 0;) {
       const std::size_t begin = level > 0 ? levels[level - 1] : 0;
-      fresh.clear();
       while (log_.size() > begin) {
         const int h = log_.back();
         log_.pop_back();
@@ -237,7 +389,7 @@ class MapSmoothing {
         for (int tries = 0; tries < 3 && !placed && c_.kind[kept] == ChartMesh::Kind::Cone; ++tries) {
           // The vertex would come back into a fan of a full turn or more, for which a cone has room: the cone has to give way.
           c_.collapse(h);
-          const bool evicted = evict_cone(c_, density_, kept);
+          const bool evicted = evict_cone(c_, density_, kept) >= 0;
           placed = c_.undo_collapse(h);
           if (!evicted) break;
         }
@@ -245,16 +397,33 @@ class MapSmoothing {
           ++report_.unplaced;
           untangle(v);
         }
-        fresh.push_back(v);
+        make_room(v);
       }
-      for (const int v : fresh) stars_.relax(v, false);
       // A full sweep whenever the mesh has grown by half, and at the end.
       if (c_.mesh.vertex_count > 1.5 * swept || level == 0) {
         sweep(options_.sweeps, movable_vertices(), progress);
         swept = c_.mesh.vertex_count;
-        for (int round = 0; round < 2; ++round) report_.cone_moves += move_cones(c_, density_);
+        for (int round = 0; round < 2; ++round) report_.cone_moves += move_cones(c_, density_, original_);
       }
       progress(1 - static_cast<double>(level) / levels.size());
+    }
+  }
+
+  // Relaxes a vertex that has just come back, and where its triangles are squeezed its neighbours with it: the next ones to come back there would be squeezed more and more.
+  void make_room(int v) {
+    std::vector<int> ring;
+    for (int tries = 0; tries < 6; ++tries) {
+      stars_.relax(v, tries > 0);
+      double least = 1e300;
+      int h = c_.mesh.out[v];
+      do {
+        least = std::min(least, c_.determinant(h / 3));
+        h = c_.mesh.ccw(h);
+      } while (h >= 0 && h != c_.mesh.out[v]);
+      if (least > 0.1) return;
+      c_.mesh.ring(v, ring);
+      for (const int w : ring)
+        if (c_.movable(w)) stars_.relax(w, true);
     }
   }
 
@@ -398,18 +567,26 @@ class MapSmoothing {
   }
 
   ChartMesh& c_;
-  const PatchedSurface& surface_;
   const GlobalMapOptions& options_;
   Distortion density_;
   StarRelaxation stars_;
   GlobalMapReport report_;
   std::vector<int> log_;
+  std::vector<char> original_;  // per vertex, empty: all
 };
 
 }  // namespace
 
 GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress) {
-  return MapSmoothing(charts, surface, options).run(progress);
+  return MapSmoothing(charts, options).smooth(surface, progress);
+}
+
+std::vector<int> uncut_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress) {
+  return MapSmoothing(charts, options).uncut(surface, progress);
+}
+
+GlobalMapReport carry_map(ChartMesh& charts, const std::vector<int>& log, const GlobalMapOptions& options, const Progress& progress) {
+  return MapSmoothing(charts, options).carry(log, progress);
 }
 
 }  // namespace hybrid_mesh

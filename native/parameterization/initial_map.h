@@ -14,4 +14,7 @@ namespace hybrid_mesh {
 // Throws Error{Internal} naming the patch if no weights give a map that holds in double precision.
 std::vector<std::array<Vec2, 3>> map_patches(PatchedSurface& surface, const Progress& progress);
 
+// The same for some of the patches: `corners` is given for the faces of all others, which keep theirs, and sides shared with them follow theirs.
+void map_patches(PatchedSurface& surface, const std::vector<int>& patches, std::vector<std::array<Vec2, 3>>& corners, const Progress& progress);
+
 }  // namespace hybrid_mesh

@@ -29,8 +29,13 @@ inline std::array<double, 3> weights_in_face(const PointSource& source, const st
   return w;
 }
 
+// A weighted sum of points that lie on one face. Weights add up to 1.
+PointSource combine(const std::array<const PointSource*, 3>& points, const std::array<double, 3>& weights);
 // Half-way between two points that lie on one face.
 PointSource middle_of(const PointSource& a, const PointSource& b);
+
+// Splits the two faces beside inner half-edge h by a point in its middle. Two faces are appended, first the one beside h; their neighbours are left to the caller.
+void split_inner_edge(TriangleSurface& mesh, std::vector<PointSource>& source, int h);
 
 // A surface cut into disk-shaped quadrilateral patches along its own edges. It covers the repaired surface exactly: each face lies on one face of that.
 struct PatchedSurface {
@@ -44,5 +49,14 @@ struct PatchedSurface {
 
   int patch_count() const { return static_cast<int>(nodes.size()); }
 };
+
+// A part of a patched surface made of some of its patches. Patches are numbered in the order given; points and nodes where the part merely touches itself are doubled.
+struct PatchedPart {
+  PatchedSurface surface;
+  std::vector<int> face;   // per face: that of the whole
+  std::vector<int> point;  // per point
+  std::vector<int> node;   // per node
+};
+PatchedPart part_of(const PatchedSurface& surface, const std::vector<int>& patches);
 
 }  // namespace hybrid_mesh

@@ -127,6 +127,13 @@ bool StarRelaxation::is_unfolded(const std::vector<int>& vertices) const {
     } while (h >= 0 && h != c_.mesh.out[v]);
     if (c_.kind[v] != ChartMesh::Kind::Cone && c_.angle_at(v) > 9) return false;
   }
+  // The stars of the vertices around share their faces, and may have been wound up with them.
+  std::vector<int> ring;
+  for (const int v : vertices) {
+    c_.mesh.ring(v, ring);
+    for (const int w : ring)
+      if (c_.kind[w] != ChartMesh::Kind::Cone && c_.angle_at(w) > 9) return false;
+  }
   return true;
 }
 

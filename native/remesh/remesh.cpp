@@ -12,7 +12,7 @@
 #include <queue>
 
 #include "hierarchy/stretch.h"
-#include "layout/base_domain.h"
+#include "layout/base_map.h"
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
@@ -201,25 +201,17 @@ class Remesher {
     base_options.size = budget_.base_size;
     base_options.boundary_side = budget_.boundary_side;
     base_options.seed = options_.seed + 1000003ull * attempt;
-    PatchedSurface patches = make_base_domain(working_.mesh, base_options, progress_.part(0.05, 0.2));
+    // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
+    if (base_options.size > 280) base_options.size -= 4;
+    const BaseDomain base(working_.mesh, base_options, progress_.part(0.05, 0.15));
     progress_.stage("map");
     watch_.start("map");
-    const std::vector<std::array<Vec2, 3>> corners = map_patches(patches, progress_.part(0.2, 0.25));
-    // Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried, at last none: slower, but nothing can fail.
-    std::unique_ptr<ChartMesh> charts;
-    for (const double vertices_a_quad : {30.0, 90.0, std::numeric_limits<double>::infinity()}) {
-      charts = std::make_unique<ChartMesh>(patches, corners);
-      GlobalMapOptions map_options;
-      map_options.vertices_a_quad = vertices_a_quad;
-      try {
-        smooth_map(*charts, patches, map_options, progress_.part(0.25, 0.5));
-        break;
-      } catch (const Error& e) {
-        if (e.code() != ErrorCode::Internal || std::isinf(vertices_a_quad)) throw;
-      }
-    }
+    LayoutSearchOptions search;
+    search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
+    BaseMap map = map_to_base(working_.mesh, base, search, progress_.part(0.15, 0.5));
+    PatchedSurface& patches = map.layout;
     watch_.start("extract");
-    std::vector<PatchMap> maps = extract_patch_maps(*charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
+    std::vector<PatchMap> maps = extract_patch_maps(map.charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
     std::vector<std::array<SideLink, 4>> links(patches.patch_count());
     for (int q = 0; q < patches.patch_count(); ++q)
       for (int i = 0; i < 4; ++i) links[q][i] = {patches.neighbours[q][i].patch, patches.neighbours[q][i].side};
@@ -234,7 +226,7 @@ class Remesher {
     result_.hierarchy = std::move(hierarchy);
     report_["base"] = {{"quads", patches.patch_count()}, {"vertices", patches.node_count}};
     watch_.stop();
-    return patches;
+    return std::move(patches);
   }
 
   // --- levels ----------------------------------------------------------------------------------------------------------------------

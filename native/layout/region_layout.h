@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "parameterization/patch_gluing.h"
+
+namespace hybrid_mesh {
+
+// A disk of patches and its boundary, whose nodes are all different.
+struct PatchRegion {
+  std::vector<int> patches;
+  std::vector<PatchSide> boundary;  // counter-clockwise
+  std::vector<int> corners;         // node at the start of each boundary side
+  std::vector<int> inner_nodes;
+};
+
+// The region made of some patches, its boundary beginning at `start`, a boundary side (patch -1: any). Nothing if they are no disk or their boundary meets a node twice.
+std::optional<PatchRegion> make_region(const PatchedSurface& surface, const std::vector<int>& patches, PatchSide start = {});
+
+// New quads for a region: a replacement of its patches that leaves its boundary as it is. It names patches and corners alone, so that the same edit applies to every surface with
+// the same layout, coarse or fine.
+struct LayoutEdit {
+  std::vector<int> patches;
+  PatchSide start;                         // the boundary side that begins at corner 0
+  std::vector<std::array<int, 4>> quads;   // nodes, counter-clockwise: 0 .. n - 1 the region's corners, n .. the new ones
+  int ring = 0;                            // 0, or n: the first new nodes form a ring inside the boundary, node n + k facing corner k
+  int inner_nodes = 0;                     // new nodes, those of the ring included
+
+  int growth() const { return static_cast<int>(quads.size()) - static_cast<int>(patches.size()); }
+};
+
+// The quads around an inner node: `region` has an even number of corners; the node is joined to the corners of one parity.
+LayoutEdit star_edit(const PatchRegion& region, int parity);
+// Two quads instead of two: the side between them joins corners `from` and `from` + 3 of six.
+LayoutEdit chord_edit(const PatchRegion& region, int from);
+// The region's quads shrunk, with a ring of quads around them: skin for a feature that sticks out of the region. One quad, two neighbours, or the quads around a node.
+std::optional<LayoutEdit> ring_edit(const PatchedSurface& surface, const PatchRegion& region);
+
+// Would all inner nodes have 3 to 6 quads after the edit, none of them made worse in vain, and the boundary's at most four?
+bool keeps_valences(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence, const std::vector<char>& on_boundary);
+// Quads around each node.
+std::vector<int> node_valences(const PatchedSurface& surface);
+std::vector<char> boundary_nodes(const PatchedSurface& surface);
+
+// Applies an edit: the region is mapped to a convex polygon, the new quads are drawn in it with straight sides, and the surface is cut along them. The quads' maps are left to
+// map_patches: their patches are returned, and `mapped.corners` has entries for all faces. Patches are renumbered densely; which number a quad gets depends on the layout alone.
+// Throws Error{Internal} if the region's map degenerates.
+std::vector<int> apply_edit(MappedSurface& mapped, const LayoutEdit& edit);
+
+}  // namespace hybrid_mesh
