@@ -182,7 +182,8 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
       }
       continue;
     }
-    // A fan from a hanging node has no triangle without area, unless a side has several. Whoever splits an n-gon into a fan starts with its first corner.
+    // A fan from a hanging node has no triangle without area, unless a side has several. The n-gon starts there too: a fan from its first corner is
+    // how many a program triangulates it.
     int apex = 0;
     for (int i = 0; i < count && count > 4 && apex == 0; ++i) {
       bool hanging = true;

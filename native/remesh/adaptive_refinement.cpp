@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Greedy by the leaves' squared distances, which are measured anew on a fitted mesh after every round. Looking ahead, to split by how much the squared distance would fall, was
-// tried with fitted and unfitted children and finds no better leaves: once leaves are about equal in error, nearly all of it goes with a split.
+// Greedy by the leaves' squared distances, measured anew on a fitted mesh in every round. To look ahead, and to split where the squared distance
+// would fall most, was tried with fitted and with unfitted children and finds no better leaves: a split takes nearly all of a leaf's error with it.
 #include "remesh/adaptive_refinement.h"
 
 #include <algorithm>
@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::int64_t most_vertices = 4000000;  // at which an error bound alone is given up
 constexpr double full = 0.98;                    // of a budget: enough
-// What a child keeps of its parent's squared distance, as far as one can tell before it is fitted: a fourth of the area, squared distances of a tenth (a smooth surface would
-// leave a sixteenth, a crease an eighth of their sum).
+// What a child keeps of its parent's squared distance, as far as one can tell before it is fitted: the four together a tenth (on a smooth surface it
+// would be a sixteenth, on a crease an eighth).
 constexpr double kept_by_child = 1.0 / 40;
 
 // A forest whose leaves, closed, are the mesh that is meant.
 //
-// Where closure splits every leaf (FaceClosure::Quads), it does so only if there are hanging nodes. Leaves without any stand for their children here: else the first split would
-// quadruple the mesh, and what was measured before would say little about it.
+// Where closure splits every leaf (FaceClosure::Quads), it does so only if there are hanging nodes. Leaves without any stand for their children here:
+// else the first split would quadruple the mesh, and what was measured before would say little about it.
 class LeafMesh {
  public:
   LeafMesh(const HybridMesh& hierarchy, int deepest) : hierarchy_(hierarchy), deepest_(deepest) {}
@@ -117,8 +117,8 @@ class Splitter {
       }
   }
 
-  // Splits what fits into the budget. A split adds a dozen vertices or so, more with what it drags along: where a small budget is not used by then, the last splits are taken
-  // back, one after the other, and others are made instead.
+  // Splits what fits into the budget. A split adds a dozen vertices or so, more with what it drags along: where a small budget is not used by then,
+  // the last splits are taken back, one after the other, and others are made instead.
   void fill(std::int64_t target) {
     const LeafMesh start = mesh_;
     const std::vector<double> start_errors = errors_;
@@ -175,7 +175,8 @@ class AdaptiveRefinement {
   QuadMesh run(HybridMesh& result, const Progress& progress) {
     const std::int64_t least = base_.leaf_counts().vertices;
     if (least > budget_)
-      throw Error(ErrorCode::InvalidInput, "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(budget_) + " allowed");
+      throw Error(ErrorCode::InvalidInput, "the surface needs at least " + std::to_string(least) + " vertices, more than the " +
+                                               std::to_string(budget_) + " allowed");
     Fitted best = options_.error > 0 ? refine_to_error(progress) : refine_to_budget(progress);
     result = std::move(best.hierarchy);
     return std::move(best.mesh);
@@ -204,7 +205,9 @@ class AdaptiveRefinement {
     return result;
   }
 
-  double distance(const QuadMesh& mesh, const Progress& progress) const { return surface_distance(surface_, to_soup(mesh), DistanceOptions(), progress).l2; }
+  double distance(const QuadMesh& mesh, const Progress& progress) const {
+    return surface_distance(surface_, to_soup(mesh), DistanceOptions(), progress).l2;
+  }
 
   static LeafErrors errors_of(const LeafMesh& leaves, const Progress& progress) {
     const HybridMesh closed = leaves.closed();
@@ -232,7 +235,8 @@ class AdaptiveRefinement {
     LeafMesh leaves(base_, options_.deepest);
     if (leaves.vertices() > budget_) return fitted(base_, progress);
     const auto allowed = static_cast<double>(budget_);
-    while (leaves.hierarchy().depth() < options_.deepest && static_cast<double>(leaves.vertices_of_next_level()) < 0.35 * allowed) leaves.refine_all();
+    while (leaves.hierarchy().depth() < options_.deepest && static_cast<double>(leaves.vertices_of_next_level()) < 0.35 * allowed)
+      leaves.refine_all();
     const double start = std::max(0.3, static_cast<double>(leaves.vertices()) / allowed);
     constexpr int rounds = 4;  // more find no better leaves
     std::vector<std::pair<LeafMesh, LeafErrors>> rounds_done;
@@ -299,7 +303,8 @@ class AdaptiveRefinement {
       const auto n = static_cast<double>(leaves.vertices());
       // Distances fall about as the number of vertices rises.
       const double wanted = n * std::clamp(state.distance / options_.error, 1.1, 2.5);
-      leaves = Splitter(leaves, state.errors, budget_, progress).split_to(static_cast<std::int64_t>(std::min(wanted, static_cast<double>(budget_))));
+      const std::int64_t target = std::min(static_cast<std::int64_t>(wanted), budget_);
+      leaves = Splitter(leaves, state.errors, budget_, progress).split_to(target);
       if (leaves.vertices() <= state.leaves.vertices()) return high ? std::move(high->fitted) : fitted(leaves.closed(), steps.next());
       low = std::move(state);
     }

@@ -9,12 +9,15 @@
 
 namespace hybrid_mesh {
 
-std::int64_t fit_sample_count(std::size_t vertices) { return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000); }
+std::int64_t fit_sample_count(std::size_t vertices) {
+  return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000);
+}
 
 std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh) {
   std::vector<double> share(mesh.points.size(), 0);
   for (std::size_t f = 0; f < mesh.face_count(); ++f)
-    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) share[mesh.indices[i]] += std::ldexp(1.0, -2 * hierarchy.level(mesh.node[f]));
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
+      share[mesh.indices[i]] += std::ldexp(1.0, -2 * hierarchy.level(mesh.node[f]));
   std::vector<int> count(mesh.points.size(), 0);
   for (const std::int32_t v : mesh.indices) ++count[v];
   for (std::size_t v = 0; v < share.size(); ++v) share[v] /= std::max(1, count[v]);

@@ -19,8 +19,8 @@ std::int64_t fit_sample_count(std::size_t vertices);
 // The parameter area of the quads around each vertex of a mesh taken from the hierarchy: the `share` of fit_mesh.
 std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh);
 
-// Moves the vertices of a mesh taken from the hierarchy, all but those of the boundary, to where the mesh comes closest to the surface under the hierarchy's maps
-// while its quads keep their shape.
+// Moves the vertices of a mesh taken from the hierarchy, all but those of the boundary, to where the mesh comes closest to the surface under the
+// hierarchy's maps while its quads keep their shape.
 void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFitOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

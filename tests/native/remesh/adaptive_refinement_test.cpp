@@ -9,6 +9,7 @@
 
 #include "generated_surfaces.h"
 #include "hierarchy/bases.h"
+#include "remesh/quality.h"
 #include "remesh/remesh.h"
 #include "remesh/surface_fit.h"
 #include "surface/distance.h"
@@ -64,7 +65,8 @@ std::string name_of(const ::testing::TestParamInfo<FaceClosure>& info) {
 }
 
 class Closures : public ::testing::TestWithParam<FaceClosure> {};
-INSTANTIATE_TEST_SUITE_P(AdaptiveRefinement, Closures, ::testing::Values(FaceClosure::Quads, FaceClosure::Transition, FaceClosure::Triangles), name_of);
+INSTANTIATE_TEST_SUITE_P(AdaptiveRefinement, Closures, ::testing::Values(FaceClosure::Quads, FaceClosure::Transition, FaceClosure::Triangles),
+                         name_of);
 
 TEST_P(Closures, UsesItsBudgetIsBalancedAndKeepsTheTopology) {
   for (const auto& [columns, rows] : {std::pair(1, 1), std::pair(3, 2)})
@@ -156,6 +158,22 @@ TEST(AdaptiveRefinement, ComesCloserThanAUniformMeshOfAsManyVertices) {
   Landscape adaptive = landscape(3, 2);
   const QuadMesh other = refined_to(adaptive, static_cast<std::int64_t>(mesh.points.size()));
   EXPECT_LT(distance(adaptive, other), 0.8 * distance(uniform, mesh));
+}
+
+TEST(SurfaceFit, ComesCloserWhereSquareQuadsMaySlideAndFoldsNone) {
+  double distances[2];
+  for (const int slide : {0, 1}) {
+    Landscape l = landscape(3, 2);
+    l.hierarchy.refine_uniform(3);
+    QuadMesh mesh = l.hierarchy.level_mesh(3);
+    SurfaceFitOptions options;
+    if (slide) options.first.square_smoothness = 0.1 * options.first.smoothness;
+    Context context;
+    fit_to_surface(mesh, l.hierarchy, options, Progress(context));
+    distances[slide] = distance(l, mesh);
+    EXPECT_EQ(quad_quality(mesh).inverted, 0);
+  }
+  EXPECT_LT(distances[1], distances[0]);
 }
 
 TEST(AdaptiveRefinement, KeepsToTheDeepestLevelAllowed) {
