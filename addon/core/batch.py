@@ -129,6 +129,8 @@ class Batch:
             self.show(f"{item.label}: done before, skipped")
         else:
             self.show(f"{item.label}: {_figures(report)}")
+        for warning in report.get("warnings", []):
+            self.fail(f"{item.label}: warning: {warning}")
         return reports.summary_row(item.name, item.label, status, report)
 
     def _do(self, number, item):

@@ -10,7 +10,7 @@ import sys
 SUMMARY_COLUMNS = (
     "name", "input", "status", "error", "input_vertices", "input_faces", "base_quads", "levels", "vertices", "quads", "l2", "hausdorff",
     "boundary_hausdorff", "irregular_vertices", "regular_fraction", "scaled_jacobian_min", "scaled_jacobian_p05", "scaled_jacobian_p50",
-    "inverted", "seconds", "peak_memory_bytes",
+    "inverted", "seconds", "peak_memory_bytes", "warnings",
 )  # fmt: skip
 
 
@@ -75,6 +75,7 @@ def summary_row(name, source, status, report=None, error=""):
         row["levels"] = len(report.get("levels", []))
         row["seconds"] = report.get("seconds", {}).get("total", "")
         row["peak_memory_bytes"] = report.get("peak_memory_bytes", "")
+        row["warnings"] = "; ".join(report.get("warnings", []))
     return row
 
 

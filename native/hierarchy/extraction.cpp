@@ -180,16 +180,20 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
         mesh.indices.insert(mesh.indices.end(), {loop[i], middles[i], centre, middles[(i + count - 1) % count]});
         end_face(face.node);
       }
-    } else if (closure == FaceClosure::Triangles && count > 4) {
-      // A fan from a hanging node has no triangle without area, unless a side has several.
-      int apex = 0;
-      for (int i = 0; i < count && apex == 0; ++i) {
-        bool hanging = true;
-        for (HalfEdge h : nodes_[face.node].half) hanging &= from(h) != polygons.corners[begin + i].vertex;
-        if (hanging) apex = i;
-      }
+      continue;
+    }
+    // A fan from a hanging node has no triangle without area, unless a side has several. The n-gon starts there too: a fan from its first corner is
+    // how many a program triangulates it.
+    int apex = 0;
+    for (int i = 0; i < count && count > 4 && apex == 0; ++i) {
+      bool hanging = true;
+      for (HalfEdge h : nodes_[face.node].half) hanging &= from(h) != polygons.corners[begin + i].vertex;
+      if (hanging) apex = i;
+    }
+    std::rotate(loop.begin(), loop.begin() + apex, loop.end());
+    if (closure == FaceClosure::Triangles && count > 4) {
       for (int i = 1; i + 1 < count; ++i) {
-        mesh.indices.insert(mesh.indices.end(), {loop[apex], loop[(apex + i) % count], loop[(apex + i + 1) % count]});
+        mesh.indices.insert(mesh.indices.end(), {loop[0], loop[i], loop[i + 1]});
         end_face(face.node);
       }
     } else {

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "remesh/quality.h"
+
 namespace hybrid_mesh {
 namespace {
 
@@ -227,6 +229,22 @@ std::vector<Vec3> vertex_normals(const QuadMesh& mesh) {
   return normals;
 }
 
+// Per vertex, by the worst of its quads.
+std::vector<double> smoothness_at(const QuadMesh& mesh, const FitOptions& options) {
+  std::vector<double> smoothness(mesh.points.size(), options.smoothness);
+  if (options.square_smoothness == options.smoothness) return smoothness;
+  std::vector<double> worst(mesh.points.size(), 1);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    // What is no quad has the shape that its hanging nodes give it.
+    const double jacobian = mesh.offsets[f + 1] - mesh.offsets[f] == 4 ? scaled_jacobian(mesh, f) : 0.5;
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) worst[mesh.indices[i]] = std::min(worst[mesh.indices[i]], jacobian);
+  }
+  constexpr double poor = 0.3, square = 0.9;
+  const double ratio = options.square_smoothness / options.smoothness;
+  for (std::size_t v = 0; v < worst.size(); ++v) smoothness[v] *= std::pow(ratio, std::clamp((worst[v] - poor) / (square - poor), 0.0, 1.0));
+  return smoothness;
+}
+
 }  // namespace
 
 std::vector<char> boundary_vertices(const QuadMesh& mesh) {
@@ -262,11 +280,11 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
   BlockMatrix matrix(mesh);
   const Neighbours neighbours(mesh);
   // The regulariser of a vertex is measured against the samples' weight that is meant to fall to it. (Not what does fall to it: at creases some get none.)
-  std::vector<double> regularizer(n, options.smoothness / n);
+  std::vector<double> part(n), regularizer(n);
   double weight_sum = 0, share_sum = 0;
   for (const FitSample& s : samples) weight_sum += s.weight;
   for (const double x : share) share_sum += x;
-  for (int v = 0; v < n; ++v) regularizer[v] = options.smoothness * weight_sum * (share.empty() ? 1.0 / n : share[v] / share_sum);
+  for (int v = 0; v < n; ++v) part[v] = weight_sum * (share.empty() ? 1.0 / n : share[v] / share_sum);
   struct Anchor {
     std::array<int, 3> v;
     std::array<double, 3> w;
@@ -274,6 +292,8 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
   std::vector<Anchor> anchors(samples.size());
   for (int round = 0; round < options.rounds; ++round) {
     progress(static_cast<double>(round) / options.rounds);
+    const std::vector<double> smoothness = smoothness_at(mesh, options);
+    for (int v = 0; v < n; ++v) regularizer[v] = smoothness[v] * part[v];
     const TriangleCover cover(mesh);
     for_all(static_cast<int>(samples.size()), [&](int i) {
       int t = cover.first[samples[i].face];

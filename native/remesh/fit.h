@@ -19,6 +19,7 @@ struct FitOptions {
   int rounds = 4;                 // each finds closest points anew
   double tangential = 0.01;       // weight of the distance along the surface against that along its normal
   double smoothness = 0.03;       // weight of the Laplacian's tangential part, which keeps quads from folding
+  double square_smoothness = 0.03;  // the same where quads are square: less lets their vertices slide to where the surface bends
   int iterations = 60;            // of conjugate gradients a round, at most
 };
 

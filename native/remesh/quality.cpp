@@ -9,6 +9,19 @@
 
 namespace hybrid_mesh {
 
+double scaled_jacobian(const QuadMesh& mesh, std::size_t face) {
+  std::array<Vec3, 4> p;
+  for (int i = 0; i < 4; ++i) p[i] = mesh.points[mesh.indices[mesh.offsets[face] + i]];
+  const Vec3 normal = (p[2] - p[0]).cross(p[3] - p[1]);
+  double least = 1;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 a = p[(i + 1) % 4] - p[i], b = p[(i + 3) % 4] - p[i];
+    const double l = std::sqrt(a.squaredNorm() * b.squaredNorm() * normal.squaredNorm());
+    least = std::min(least, l > 0 ? a.cross(b).dot(normal) / l : 0.0);
+  }
+  return least;
+}
+
 QuadQuality quad_quality(const QuadMesh& mesh) {
   QuadQuality q;
   std::vector<double> jacobians;
@@ -16,16 +29,7 @@ QuadQuality quad_quality(const QuadMesh& mesh) {
     const std::int64_t n = mesh.offsets[f + 1] - mesh.offsets[f];
     q.triangles += n == 3;
     if (n != 4) continue;
-    std::array<Vec3, 4> p;
-    for (int i = 0; i < 4; ++i) p[i] = mesh.points[mesh.indices[mesh.offsets[f] + i]];
-    const Vec3 normal = (p[2] - p[0]).cross(p[3] - p[1]);
-    double least = 1;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 a = p[(i + 1) % 4] - p[i], b = p[(i + 3) % 4] - p[i];
-      const double l = std::sqrt(a.squaredNorm() * b.squaredNorm() * normal.squaredNorm());
-      least = std::min(least, l > 0 ? a.cross(b).dot(normal) / l : 0.0);
-    }
-    jacobians.push_back(least);
+    jacobians.push_back(scaled_jacobian(mesh, f));
   }
   q.quads = static_cast<std::int64_t>(jacobians.size());
   if (jacobians.empty()) return q;

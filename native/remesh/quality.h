@@ -13,6 +13,9 @@ struct QuadQuality {
   std::int64_t quads = 0, triangles = 0;
 };
 
+// Of a face that is a quad.
+double scaled_jacobian(const QuadMesh& mesh, std::size_t face);
+
 QuadQuality quad_quality(const QuadMesh& mesh);
 
 // Per vertex: is it irregular?

@@ -7,18 +7,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <memory>
-#include <queue>
+#include <sstream>
 
 #include "hierarchy/stretch.h"
 #include "layout/base_map.h"
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
-#include "remesh/angle_relaxation.h"
+#include "remesh/adaptive_refinement.h"
 #include "remesh/quality.h"
-#include "remesh/surface_samples.h"
+#include "remesh/surface_fit.h"
 #include "remesh/working_surface.h"
 #include "surface/distance.h"
 #include "surface/topology_summary.h"
@@ -259,43 +260,18 @@ class Remesher {
     watch_.stop();
   }
 
-  std::int64_t samples_for(std::size_t vertices) const { return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000); }
-
-  // The parameter area of the quads around each vertex.
-  std::vector<double> parameter_shares(const QuadMesh& mesh) const {
-    std::vector<double> share(mesh.points.size(), 0);
-    for (std::size_t f = 0; f < mesh.face_count(); ++f)
-      for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) share[mesh.indices[i]] += std::ldexp(1.0, -2 * result_.hierarchy.level(mesh.node[f]));
-    std::vector<int> count(mesh.points.size(), 0);
-    for (const std::int32_t v : mesh.indices) ++count[v];
-    for (std::size_t v = 0; v < share.size(); ++v) share[v] /= std::max(1, count[v]);
-    return share;
-  }
-
   static FitOptions final_fit() {
     FitOptions options;
     options.rounds = 2;
     return options;
   }
 
-  void fit(QuadMesh& mesh, FitOptions fit_options, int turns, int level, const Progress& progress) {
-    const SurfaceSamples samples(result_.hierarchy, samples_for(mesh.points.size()), level);
-    std::vector<FitSample> on = samples.on(result_.hierarchy, mesh);
-    const std::vector<char> boundary = boundary_vertices(mesh);
-    const std::vector<double> share = parameter_shares(mesh);
-    fit_mesh(mesh, boundary, share, on, fit_options, progress);
-    // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
-    for (int turn = 0; turn < turns; ++turn) {
-      relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
-      fit_options.rounds = turn + 1;
-      fit_mesh(mesh, boundary, share, on, fit_options, progress);
-    }
-    // What is still folded is unfolded even where the surface bends: a few quads, at the cost of a little distance.
-    AngleRelaxationOptions unfold;
-    unfold.enough = 0.05;
-    unfold.flatness = -1;
-    unfold.reach = 0.3;
-    relax_angles(mesh, boundary, unfold, progress);
+  void fit(QuadMesh& mesh, const FitOptions& fit_options, int turns, int level, const Progress& progress) {
+    SurfaceFitOptions options;
+    options.first = fit_options;
+    options.turns = turns;
+    options.finest = level;
+    fit_to_surface(mesh, result_.hierarchy, options, progress);
   }
 
   double measured_l2(const QuadMesh& mesh, std::int64_t samples) {
@@ -321,81 +297,16 @@ class Remesher {
     watch_.stop();
   }
 
-  // Splits the leaves with the largest squared distances first.
   void refine_adaptively() {
-    HybridMesh& h = result_.hierarchy;
     progress_.stage("adaptive refinement");
     watch_.start("adaptive");
-    const std::int64_t budget = budget_.vertices;
-    const int deepest = options_.levels >= 0 ? options_.levels : 12;
-    while (h.depth() < deepest && 8 * h.leaf_counts().faces * 2 < 0.35 * static_cast<double>(budget)) h.refine_uniform(h.depth() + 1);
-    const double start = std::max(0.3, static_cast<double>(vertices_when_closed(h)) / budget);
-    const int rounds = 6;
-    for (int round = 0; round <= rounds; ++round) {
-      const Progress part = progress_.part(0.55 + 0.2 * round / (rounds + 1), 0.55 + 0.2 * (round + 1) / (rounds + 1));
-      QuadMesh mesh = h.final_mesh();
-      const SurfaceSamples samples(h, samples_for(mesh.points.size()), h.depth());
-      std::vector<FitSample> on = samples.on(h, mesh);
-      FitOptions fit_options;
-      fit_options.rounds = 2;
-      fit_mesh(mesh, boundary_vertices(mesh), parameter_shares(mesh), on, fit_options, part);
-      if (options_.error > 0 && measured_l2(mesh, 100000) <= options_.error) break;
-      if (round == rounds) break;
-      const std::vector<double> squared = squared_distances(mesh, on);
-      std::vector<double> error(h.node_count(), 0);
-      for (std::size_t i = 0; i < on.size(); ++i) error[mesh.node[on[i].face]] += on[i].weight * squared[i];
-      const double fraction = start + (1 - start) * (round + 1.0) / rounds;
-      split_worst(error, static_cast<std::int64_t>(fraction * static_cast<double>(budget)), budget, deepest);
-    }
-    // By chance no leaf is finer than its neighbours: what closure would have split is split here.
-    if (h.conforming() && vertices_when_closed(h) <= budget && h.depth() < deepest)
-      for (const int leaf : h.leaves()) h.refine(leaf);
-    watch_.start("fit");
-    result_.final_mesh = h.final_mesh();
-    fit(result_.final_mesh, final_fit(), 2, h.depth(), progress_.part(0.75, 0.8));
+    AdaptiveOptions adaptive;
+    // An error bound alone asks for as few vertices as meet it, however many that are.
+    adaptive.vertices = options_.error > 0 && options_.vertices == 0 ? 0 : budget_.vertices;
+    adaptive.error = options_.error;
+    if (options_.levels >= 0) adaptive.deepest = options_.levels;
+    result_.final_mesh = hybrid_mesh::refine_adaptively(result_.hierarchy, input_unit_, adaptive, progress_.part(0.55, 0.8));
     watch_.stop();
-  }
-
-  // Vertices of the mesh once every leaf is split for closure. (A mesh without hanging nodes needs none, but the next split makes some.)
-  static std::int64_t vertices_when_closed(const HybridMesh& h) { return 2 * (h.leaf_counts().vertices + h.leaf_counts().faces) - h.leaf_counts().euler; }
-
-  void split_worst(const std::vector<double>& error, std::int64_t target, std::int64_t budget, int deepest) {
-    HybridMesh& h = result_.hierarchy;
-    struct Entry {
-      double error;
-      int node;
-      bool operator<(const Entry& o) const { return error != o.error ? error < o.error : node > o.node; }
-    };
-    std::priority_queue<Entry> queue;
-    for (const int leaf : h.leaves())
-      if (h.level(leaf) < deepest) queue.push({error[leaf], leaf});
-    std::vector<int> refined;
-    int refused = 0;
-    while (vertices_when_closed(h) < target && !queue.empty() && refused < 40) {
-      const Entry worst = queue.top();
-      queue.pop();
-      if (!h.is_leaf(worst.node)) continue;
-      refined.clear();
-      // Close to the budget a split may reach beyond it by what it drags along: tried on a copy.
-      if (vertices_when_closed(h) > budget - std::max<std::int64_t>(400, budget / 50)) {
-        HybridMesh trial = h;
-        trial.refine_balanced(worst.node, &refined);
-        if (vertices_when_closed(trial) > budget) {
-          ++refused;
-          continue;
-        }
-        h = std::move(trial);
-      } else {
-        h.refine_balanced(worst.node, &refined);
-      }
-      // What a child keeps of its parent's error, as far as one can tell before it is fitted: squared distances shrink 16-fold, the area four-fold.
-      for (const int node : refined) {
-        const double parent = node < static_cast<int>(error.size()) ? error[node] : 0;
-        if (h.level(node) + 1 >= deepest) continue;
-        for (int k = 0; k < 4; ++k) queue.push({parent / 40, h.first_child(node) + k});
-      }
-      progress_.check();
-    }
   }
 
   // --- report ------------------------------------------------------------------------------------------------------------------------
@@ -453,12 +364,24 @@ class Remesher {
                         {"regular_fraction", 1.0 - static_cast<double>(h.base_count()) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
                         {"irregular_vertices", {{"base", of_base}, {"operations", 0}, {"transitions", of_transitions}}},
                         {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
+    report_["warnings"] = warnings(d.l2);
     h.set_final_positions(mesh);
     watch_.stop();
     place_result();
     report_["seconds"] = watch_.json();
     result_.report = std::move(report_);
     progress_(1);
+  }
+
+  // What was asked for and could not be had.
+  Json warnings(double l2) const {
+    Json list = Json::array();
+    if (options_.error > 0 && l2 > options_.error) {
+      std::ostringstream text;
+      text << std::setprecision(3) << "the error bound of " << options_.error << " is not met: the L2 distance is " << l2;
+      list.push_back(text.str());
+    }
+    return list;
   }
 
   // Everything was computed around the origin: bring maps and meshes to where the input stands.

@@ -23,6 +23,12 @@ def test_summary_has_a_line_an_input_and_survives_any_name():
     assert read[1]["irregular_vertices"] == "5" and read[1]["levels"] == "2"
 
 
+def test_the_summary_repeats_warnings():
+    row = report.summary_row("a", "a.ply", "done", {"final": {}, "warnings": ["too far", "too late"]})
+    assert row["warnings"] == "too far; too late"
+    assert report.summary_row("a", "a.ply", "done", {"final": {}})["warnings"] == ""
+
+
 def test_quality_of_a_report_without_figures():
     figures = report.quality({})
     assert figures["vertices"] is None and figures["irregular_vertices"] == 0

@@ -68,6 +68,9 @@ class HYBRID_MESH_OT_remesh(RemeshProperties, NativeJobOperator):
                 obj.hide_set(True)
         for one in built:
             self.report({"INFO"}, _line(one))
+        for task, result in results:
+            for warning in json.loads(result.report).get("warnings", []):
+                self.report({"WARNING"}, f"{task.name}: {warning}")
 
 
 class HYBRID_MESH_OT_preset(bpy.types.Operator):

@@ -180,6 +180,12 @@ TEST(HybridMesh, ClosuresAreConformingManifolds) {
         }
         for (std::size_t f = 0; f < final_mesh.face_count(); ++f)
           EXPECT_LE(final_mesh.offsets[f + 1] - final_mesh.offsets[f], closure == FaceClosure::Transition ? 6 : 4);
+        // N-gons start at a hanging node.
+        for (std::size_t f = 0; f < final_mesh.face_count(); ++f) {
+          const VertexId first = final_mesh.vertex[final_mesh.indices[final_mesh.offsets[f]]];
+          for (int c = 0; c < 4 && final_mesh.offsets[f + 1] - final_mesh.offsets[f] > 4; ++c)
+            EXPECT_TRUE(first != mesh.corner(final_mesh.node[f], c));
+        }
         for (int j = 2; j <= mesh.depth(); ++j) {
           const SoupTopology level = soup_topology(mesh.level_mesh(j, LevelKind::N, closure));
           EXPECT_TRUE(level.manifold);

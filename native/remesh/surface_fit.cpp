@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/surface_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "remesh/angle_relaxation.h"
+#include "remesh/surface_samples.h"
+
+namespace hybrid_mesh {
+
+std::int64_t fit_sample_count(std::size_t vertices) {
+  return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000);
+}
+
+std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh) {
+  std::vector<double> share(mesh.points.size(), 0);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
+      share[mesh.indices[i]] += std::ldexp(1.0, -2 * hierarchy.level(mesh.node[f]));
+  std::vector<int> count(mesh.points.size(), 0);
+  for (const std::int32_t v : mesh.indices) ++count[v];
+  for (std::size_t v = 0; v < share.size(); ++v) share[v] /= std::max(1, count[v]);
+  return share;
+}
+
+void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFitOptions& options, const Progress& progress) {
+  const SurfaceSamples samples(hierarchy, fit_sample_count(mesh.points.size()), options.finest);
+  std::vector<FitSample> on = samples.on(hierarchy, mesh);
+  const std::vector<char> boundary = boundary_vertices(mesh);
+  const std::vector<double> share = parameter_shares(hierarchy, mesh);
+  FitOptions fit = options.first;
+  fit_mesh(mesh, boundary, share, on, fit, progress);
+  // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
+  for (int turn = 0; turn < options.turns; ++turn) {
+    relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
+    fit.rounds = turn + 1;
+    fit_mesh(mesh, boundary, share, on, fit, progress);
+  }
+  // What is still folded is unfolded even where the surface bends: a few quads, at the cost of a little distance.
+  AngleRelaxationOptions unfold;
+  unfold.enough = 0.05;
+  unfold.flatness = -1;
+  unfold.reach = options.unfold;
+  relax_angles(mesh, boundary, unfold, progress);
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "hierarchy/hybrid_mesh.h"
+#include "remesh/fit.h"
+
+namespace hybrid_mesh {
+
+struct SurfaceFitOptions {
+  FitOptions first;      // the fit that comes first
+  int turns = 2;         // of angle relaxation and fit after it
+  int finest = 64;       // leaves finer than this level count as one of it, as in a mesh of that level
+  double unfold = 0.3;   // how far folded quads' vertices may go at the end, in lengths of their shortest edge
+};
+
+// The samples that a mesh of so many vertices is fitted to.
+std::int64_t fit_sample_count(std::size_t vertices);
+
+// The parameter area of the quads around each vertex of a mesh taken from the hierarchy: the `share` of fit_mesh.
+std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh);
+
+// Moves the vertices of a mesh taken from the hierarchy, all but those of the boundary, to where the mesh comes closest to the surface under the
+// hierarchy's maps while its quads keep their shape.
+void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFitOptions& options, const Progress& progress);
+
+}  // namespace hybrid_mesh
