@@ -203,7 +203,7 @@ class Remesher {
     base_options.boundary_side = budget_.boundary_side;
     base_options.seed = options_.seed + 1000003ull * attempt;
     // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
-    if (base_options.size > 280) base_options.size -= 4;
+    if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= 4;
     const BaseDomain base(working_.mesh, base_options, progress_.part(0.05, 0.15));
     progress_.stage("map");
     watch_.start("map");
