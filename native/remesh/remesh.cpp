@@ -262,7 +262,7 @@ class Remesher {
         fit(mesh, coarse, 1, j, part);
       }
       h.set_level_positions(j, mesh);
-      report_["levels"].push_back(describe_level(j, mesh, part));
+      report_["levels"].push_back(describe_level(j, last, mesh, part));
     }
     watch_.stop();
   }
@@ -407,11 +407,13 @@ class Remesher {
   }
 
   // --- report ------------------------------------------------------------------------------------------------------------------------
-  Json describe_level(int j, const QuadMesh& mesh, const Progress& progress) {
+  // The last level is the final mesh, which is measured this once.
+  Json describe_level(int j, bool last, const QuadMesh& mesh, const Progress& progress) {
     const TopologySummary t = summarize_topology(to_soup(mesh));
     DistanceOptions distance;
-    distance.samples = 30000;
+    if (!last) distance.samples = 30000;
     const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), distance, progress);
+    if (last) final_distance_ = d;
     const LevelStretch s = level_stretch(result_.hierarchy, mesh);
     std::vector<double> sorted = s.stretch;
     std::sort(sorted.begin(), sorted.end());
@@ -435,7 +437,7 @@ class Remesher {
     QuadMesh& mesh = result_.final_mesh;
     progress_.stage("measure");
     watch_.start("measure");
-    const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), DistanceOptions(), progress_.part(0.95, 0.99));
+    const SurfaceDistance& d = final_distance_;
     const TopologySummary t = summarize_topology(to_soup(mesh));
     if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology_.components || t.boundary_loops != topology_.boundary_loops ||
         t.euler != topology_.euler)
@@ -499,6 +501,7 @@ class Remesher {
   Placement placement_;
   WorkingSurface working_;
   PolygonSoup input_unit_;
+  SurfaceDistance final_distance_;
   Budget budget_;
 };
 
