@@ -133,6 +133,19 @@ class MapSmoothing {
     return good && fan < (c_.kind[u] == ChartMesh::Kind::Cone ? 3.0 : 4.0);
   }
 
+  // Within the plane of a face, or of the two beside an edge, triangles that fold over each other have too much area.
+  bool keeps_area(int h) const {
+    const int v = c_.mesh.from(h);
+    const Vec3& target = c_.points[c_.mesh.to(h)];
+    double before = 0, after = 0;
+    c_.for_star(v, [&](int g, const Complex&, const Complex&) {
+      const Vec3 &p = c_.points[c_.mesh.to(g)], &q = c_.points[c_.mesh.apex(g)];
+      before += (p - c_.points[v]).cross(q - c_.points[v]).norm();
+      after += (p - target).cross(q - target).norm();
+    });
+    return after <= before * (1 + 1e-9);
+  }
+
   void merge_insertions(const PatchedSurface& surface, double least_determinant, double least_shape = 1e-6) {
     std::vector<int> inserted;
     for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
@@ -145,7 +158,8 @@ class MapSmoothing {
         int h = c_.mesh.out[v];
         do {
           const double l = (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm();
-          if (l < shortest && merges_in_place(surface, h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape)) shortest = l, best = h;
+          if (l < shortest && merges_in_place(surface, h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape) && (least_shape < 0 || keeps_area(h)))
+            shortest = l, best = h;
           if (c_.mesh.is_boundary(v)) break;
           h = c_.mesh.ccw(h);
         } while (h >= 0 && h != c_.mesh.out[v]);

@@ -7,15 +7,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iomanip>
+#include <cstdio>
 #include <limits>
 #include <memory>
-#include <sstream>
 
 #include "hierarchy/stretch.h"
 #include "layout/base_map.h"
-#include "parameterization/global_map.h"
-#include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
 #include "remesh/adaptive_refinement.h"
 #include "remesh/quality.h"
@@ -145,6 +142,7 @@ class Remesher {
   Budget plan_budget() const {
     Budget b;
     b.vertices = options_.vertices > 0 ? options_.vertices : static_cast<std::int64_t>(result_.repaired.points.size());
+    if (aim_ > 0) b.vertices = aim_;
     // Roughly what the topology asks for at least.
     const double least = 6.0 * topology_.components + 8 * topology_.genus + 2.6 * topology_.boundary_loops;
     const double enough = std::max(std::clamp(static_cast<double>(b.vertices) / 64, 20.0, 150.0), std::min(1.7 * least, b.vertices / 4.0));
@@ -153,7 +151,7 @@ class Remesher {
     } else {
       while (b.levels < 6 && static_cast<double>(b.vertices) / std::pow(4.0, b.levels + 1) >= enough) ++b.levels;
     }
-    set_levels(b, b.levels);
+    set_levels(b, std::max(0, b.levels - levels_less_));
     return b;
   }
   void set_levels(Budget& b, int levels) const {
@@ -255,7 +253,7 @@ class Remesher {
         fit(mesh, coarse, 1, j, part);
       }
       h.set_level_positions(j, mesh);
-      report_["levels"].push_back(describe_level(j, mesh, part));
+      report_["levels"].push_back(describe_level(j, last, mesh, part));
     }
     watch_.stop();
   }
@@ -280,21 +278,124 @@ class Remesher {
     return surface_distance(input_unit_, to_soup(mesh), distance, progress_.part(0.6, 0.6)).l2;
   }
 
-  void refine_uniformly() {
-    HybridMesh& h = result_.hierarchy;
-    progress_.stage("fit");
+  // Measured as the report does, so that it says the same; fewer samples are enough to see that a mesh is far off.
+  double l2_against_bound(const QuadMesh& mesh) {
+    const double l2 = measured_l2(mesh, 20000);
+    return l2 > 1.1 * options_.error ? l2 : measured_l2(mesh, DistanceOptions().samples);
+  }
+
+  void fit_level(int level) {
     watch_.start("fit");
-    int levels = budget_.levels;
-    if (options_.error > 0 && options_.vertices == 0 && options_.levels < 0) levels = 0;
-    for (;;) {
-      h.refine_uniform(levels);
-      result_.final_mesh = h.level_mesh(levels);
-      fit(result_.final_mesh, final_fit(), 2, levels, progress_.part(0.6, 0.8));
-      if (!(options_.error > 0) || options_.vertices > 0 || options_.levels >= 0) break;
-      if (measured_l2(result_.final_mesh, 50000) <= options_.error || levels >= 9) break;
-      ++levels;
-    }
+    result_.hierarchy.refine_uniform(level);
+    result_.final_mesh = result_.hierarchy.level_mesh(level);
+    fit(result_.final_mesh, final_fit(), 2, level, progress_.part(0.6, 0.8));
+  }
+
+  void refine_uniformly() {
+    progress_.stage("fit");
+    if (options_.error > 0)
+      meet_error();
+    else
+      fit_level(budget_.levels);
     watch_.stop();
+  }
+
+  struct Attempt {
+    std::int64_t vertices = 0;
+    double l2 = 0;
+  };
+
+  Attempt measured_attempt() { return {static_cast<std::int64_t>(result_.final_mesh.points.size()), l2_against_bound(result_.final_mesh)}; }
+
+  std::int64_t most_vertices() const {
+    return options_.vertices > 0 ? options_.vertices : std::max<std::int64_t>(1000000, static_cast<std::int64_t>(result_.repaired.points.size()));
+  }
+
+  // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.
+  Attempt climb() {
+    const bool one_level = options_.levels >= 0;
+    const int last = options_.vertices > 0 || one_level ? budget_.levels : 12;
+    for (int level = one_level ? last : 0;; ++level) {
+      fit_level(level);
+      const Attempt made = measured_attempt();
+      if (made.l2 <= options_.error || level == last || 4 * made.vertices > most_vertices()) return made;
+      // Not worth the wait if even errors that fall faster than they do would not fall enough.
+      if (options_.vertices == 0 && made.l2 * std::pow(static_cast<double>(made.vertices) / static_cast<double>(most_vertices()), 1.2) > options_.error) return made;
+    }
+  }
+
+  // About the fewest vertices that meet the error bound. The levels of a base differ fourfold in vertices, so that the first one that meets
+  // the bound may have four times too many; the size of the base, though, can be chosen almost freely. The error falls about as 1 / vertices
+  // (fitted quads follow a smooth surface to second order in their size), by which the meshes made so far tell the size of the next. A base
+  // costs as much as all its levels, and bases of about one size differ by some per cent in their errors: hence a few steps, each of which
+  // promises to save some vertices, and not a search to the end.
+  void meet_error() {
+    Attempt enough, too_few;  // the fewest vertices that met the bound and the most that did not; 0 vertices: none yet
+    const Attempt first = climb();
+    (first.l2 <= options_.error ? enough : too_few) = first;
+    const bool any_base = options_.base == BaseSize::Auto, one_level = options_.levels >= 0;
+    const bool may_grow = options_.vertices == 0 && one_level;
+    for (int step = 0; step < 4 && any_base && (enough.vertices > 0 || may_grow); ++step) {
+      aim_ = next_aim(enough, too_few);
+      if (aim_ > most_vertices() || (enough.vertices > 0 && (aim_ > 0.93 * enough.vertices || aim_ < 1.03 * too_few.vertices))) break;
+      Made before{std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"]};
+      const Attempt made = attempt_aim();
+      const bool met = made.vertices > 0 && made.l2 <= options_.error;
+      const bool better = enough.vertices == 0 ? made.vertices > 0 : met && made.vertices < enough.vertices;
+      if (!better) {
+        result_.hierarchy = std::move(before.hierarchy);
+        result_.final_mesh = std::move(before.mesh);
+        report_["base"] = std::move(before.base);
+      }
+      if (made.vertices == 0 || (met && !better)) break;
+      (met ? enough : too_few) = made;
+    }
+    if (enough.vertices == 0 && options_.vertices == 0 && (any_base || !one_level))
+      throw Error(ErrorCode::InvalidInput, "the error bound " + scientific(options_.error) + " is out of reach: " + std::to_string(too_few.vertices) +
+                                               " vertices have an L2 distance of " + scientific(too_few.l2) + ", and " + std::to_string(most_vertices()) +
+                                               ", the most that are tried unless a number is given, would not do");
+  }
+
+  std::int64_t next_aim(const Attempt& enough, const Attempt& too_few) const {
+    double vertices = 0;
+    if (enough.vertices == 0 || too_few.vertices == 0) {
+      const Attempt& known = enough.vertices > 0 ? enough : too_few;
+      // Too far rather than not far enough when it is to grow: from above it comes closer, from below it is in danger of never arriving.
+      vertices = static_cast<double>(known.vertices) * std::pow(known.l2 / options_.error, enough.vertices > 0 ? 1.0 : 1.3);
+    } else {
+      const double part = std::log(too_few.l2 / options_.error) / std::log(too_few.l2 / enough.l2);
+      vertices = static_cast<double>(too_few.vertices) * std::pow(static_cast<double>(enough.vertices) / static_cast<double>(too_few.vertices), part);
+    }
+    return static_cast<std::int64_t>(1.03 * vertices);  // rather met than just missed
+  }
+
+  struct Made {
+    HybridMesh hierarchy;
+    QuadMesh mesh;
+    Json base;
+  };
+
+  // A mesh on a base that is planned for `aim_` vertices; no vertices if no base of that size can be made. Where the error is far above what
+  // the size promises, the base is too coarse for the shape and has lost a tip: then the same on a base of four times as many quads, from now on.
+  Attempt attempt_aim() {
+    for (;;) {
+      try {
+        build_base();
+      } catch (const Error& e) {
+        if (e.code() == ErrorCode::Cancelled) throw;
+        return {};
+      }
+      fit_level(budget_.levels);
+      const Attempt made = measured_attempt();
+      if (made.l2 < 1.3 * options_.error || options_.levels >= 0 || budget_.levels == 0 || levels_less_ == 1) return made;
+      levels_less_ = 1;
+    }
+  }
+
+  static std::string scientific(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2e", value);
+    return text;
   }
 
   void refine_adaptively() {
@@ -310,11 +411,13 @@ class Remesher {
   }
 
   // --- report ------------------------------------------------------------------------------------------------------------------------
-  Json describe_level(int j, const QuadMesh& mesh, const Progress& progress) {
+  // The last level is the final mesh, which is measured this once.
+  Json describe_level(int j, bool last, const QuadMesh& mesh, const Progress& progress) {
     const TopologySummary t = summarize_topology(to_soup(mesh));
     DistanceOptions distance;
-    distance.samples = 30000;
+    if (!last) distance.samples = 30000;
     const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), distance, progress);
+    if (last) final_distance_ = d;
     const LevelStretch s = level_stretch(result_.hierarchy, mesh);
     std::vector<double> sorted = s.stretch;
     std::sort(sorted.begin(), sorted.end());
@@ -338,7 +441,7 @@ class Remesher {
     QuadMesh& mesh = result_.final_mesh;
     progress_.stage("measure");
     watch_.start("measure");
-    const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), DistanceOptions(), progress_.part(0.95, 0.99));
+    const SurfaceDistance& d = final_distance_;
     const TopologySummary t = summarize_topology(to_soup(mesh));
     if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology_.components || t.boundary_loops != topology_.boundary_loops ||
         t.euler != topology_.euler)
@@ -364,6 +467,7 @@ class Remesher {
                         {"regular_fraction", 1.0 - static_cast<double>(h.base_count()) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
                         {"irregular_vertices", {{"base", of_base}, {"operations", 0}, {"transitions", of_transitions}}},
                         {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
+    if (options_.error > 0) report_["final"]["error_bound_met"] = d.l2 <= options_.error;
     report_["warnings"] = warnings(d.l2);
     h.set_final_positions(mesh);
     watch_.stop();
@@ -376,11 +480,7 @@ class Remesher {
   // What was asked for and could not be had.
   Json warnings(double l2) const {
     Json list = Json::array();
-    if (options_.error > 0 && l2 > options_.error) {
-      std::ostringstream text;
-      text << std::setprecision(3) << "the error bound of " << options_.error << " is not met: the L2 distance is " << l2;
-      list.push_back(text.str());
-    }
+    if (options_.error > 0 && l2 > options_.error) list.push_back("the error bound of " + scientific(options_.error) + " is not met: the L2 distance is " + scientific(l2));
     return list;
   }
 
@@ -414,7 +514,11 @@ class Remesher {
   Placement placement_;
   WorkingSurface working_;
   PolygonSoup input_unit_;
+  SurfaceDistance final_distance_;
   Budget budget_;
+  // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
+  std::int64_t aim_ = 0;
+  int levels_less_ = 0;
 };
 
 }  // namespace

@@ -28,6 +28,7 @@ struct Box {
     }
     return sum;
   }
+  bool meets(const Box& b) const { return (low.array() <= b.high.array()).all() && (b.low.array() <= high.array()).all(); }
 };
 
 struct Corners {
@@ -150,6 +151,37 @@ class SurfaceDistanceQuery::Tree {
     return best;
   }
 
+  double squared_distance(const Vec3& point, int face) const {
+    std::array<double, 3> weights;
+    return std::ldexp(closest_on_triangle(local(point), corners_[slot_[face]], weights), 2 * exponent_);
+  }
+
+  bool faces_in_box(const Vec3& low, const Vec3& high, std::size_t most, std::vector<int>& faces) const {
+    const Box box{local(low), local(high)};
+    faces.clear();
+    int stack[64];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const int index = stack[--depth];
+      const Node& node = nodes_[index];
+      if (!box.meets(node.box)) continue;
+      if (node.second >= 0) {
+        stack[depth++] = node.second;
+        stack[depth++] = index + 1;
+        continue;
+      }
+      for (int i = node.begin; i < node.end; ++i) {
+        Box own;
+        for (const Vec3& p : {corners_[i].a, corners_[i].b, corners_[i].c}) own.add(p);
+        if (!box.meets(own)) continue;
+        if (faces.size() == most) return false;
+        faces.push_back(order_[i]);
+      }
+    }
+    return true;
+  }
+
  private:
   struct Node {
     Box box;
@@ -208,5 +240,9 @@ SurfaceDistanceQuery& SurfaceDistanceQuery::operator=(SurfaceDistanceQuery&&) no
 
 ClosestPoint SurfaceDistanceQuery::closest(const Vec3& p) const { return tree_->closest(p, -1); }
 ClosestPoint SurfaceDistanceQuery::closest(const Vec3& p, int guess) const { return tree_->closest(p, guess); }
+double SurfaceDistanceQuery::squared_distance(const Vec3& p, int face) const { return tree_->squared_distance(p, face); }
+bool SurfaceDistanceQuery::faces_in_box(const Vec3& low, const Vec3& high, std::size_t most, std::vector<int>& faces) const {
+  return tree_->faces_in_box(low, high, most, faces);
+}
 
 }  // namespace hybrid_mesh

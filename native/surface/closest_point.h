@@ -30,6 +30,11 @@ class SurfaceDistanceQuery {
   ClosestPoint closest(const Vec3& p) const;
   // The same result, found faster if the face `guess` is near p (-1: no guess).
   ClosestPoint closest(const Vec3& p, int guess) const;
+  // Squared distance of p to one face.
+  double squared_distance(const Vec3& p, int face) const;
+  // Puts the faces whose boxes meet the box [low, high] into `faces`, in an order that depends on the triangles alone. False, with some
+  // of them, if there are more than `most`.
+  bool faces_in_box(const Vec3& low, const Vec3& high, std::size_t most, std::vector<int>& faces) const;
 
  private:
   class Tree;

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "surface/closest_point.h"
 #include "surface/edge_groups.h"
+#include "surface/one_sided_hausdorff.h"
 #include "surface/triangulation.h"
 
 namespace hybrid_mesh {
@@ -48,6 +49,7 @@ struct Faces {
   std::vector<Vec3> points;
   std::vector<std::array<int, 3>> triangles;  // of some area
   std::vector<double> area_up_to;             // inclusive
+  std::vector<char> rim;                      // of the triangles, see SurfaceFaces
   std::vector<std::array<int, 3>> boundary;   // edges of one polygon, as triangles without area
 };
 
@@ -64,6 +66,49 @@ Frame frame_of(const PolygonSoup& soup) {
   return frame;
 }
 
+// Spreads the lowest 21 bits: two zeros after each.
+std::uint64_t spread(std::uint64_t x) {
+  x = (x | x << 32) & 0x001f00000000ffffull;
+  x = (x | x << 16) & 0x001f0000ff0000ffull;
+  x = (x | x << 8) & 0x100f00f00f00f00full;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ull;
+  return (x | x << 2) & 0x1249249249249249ull;
+}
+
+// In Morton order: what is worked on one after the other is near, in space and in memory.
+// `on_rim` marks the points where polygons are missing, and is given those of the triangles left out.
+void add_triangles(const PolygonSoup& soup, std::vector<char>& on_rim, Faces& faces) {
+  struct Entry {
+    std::uint64_t code;
+    std::array<int, 3> triangle;
+    double area;
+  };
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const int v : soup.indices) low = low.cwiseMin(faces.points[v]), high = high.cwiseMax(faces.points[v]);
+  const double cells = 0x1fffff / std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
+  std::vector<Entry> entries;
+  for (const auto& t : triangulate(soup).triangles) {
+    const Vec3 &a = faces.points[t[0]], &b = faces.points[t[1]], &c = faces.points[t[2]];
+    const double area = (b - a).cross(c - a).norm() / 2;
+    if (!(area > 0)) {
+      for (const int v : t) on_rim[v] = 1;
+      continue;
+    }
+    const Vec3 cell = ((a + b + c) / 3 - low) * cells;
+    std::uint64_t code = 0;
+    for (int i = 0; i < 3; ++i) code |= spread(static_cast<std::uint64_t>(std::clamp(cell[i], 0.0, double{0x1fffff}))) << i;
+    entries.push_back({code, {t[0], t[1], t[2]}, area});
+  }
+  if (entries.empty()) throw Error(ErrorCode::InvalidInput, "a surface without area has no distances");
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& e, const Entry& f) { return e.code < f.code; });
+  double total = 0;
+  for (const Entry& e : entries) {
+    faces.triangles.push_back(e.triangle);
+    faces.rim.push_back(on_rim[e.triangle[0]] + on_rim[e.triangle[1]] + on_rim[e.triangle[2]] > 1);
+    faces.area_up_to.push_back(total += e.area);
+  }
+}
+
 Faces place(const PolygonSoup& soup, const Frame& frame) {
   Faces faces;
   faces.points.reserve(soup.points.size());
@@ -71,16 +116,6 @@ Faces place(const PolygonSoup& soup, const Frame& frame) {
     faces.points.push_back(frame.local(p));
     if (!(faces.points.back().cwiseAbs().maxCoeff() < 1e100)) throw Error(ErrorCode::InvalidInput, "the surfaces are too far apart to be compared");
   }
-  double total = 0;
-  for (const auto& t : triangulate(soup).triangles) {
-    const Vec3 &a = faces.points[t[0]], &b = faces.points[t[1]], &c = faces.points[t[2]];
-    const double area = (b - a).cross(c - a).norm() / 2;
-    if (!(area > 0)) continue;
-    faces.triangles.push_back({t[0], t[1], t[2]});
-    faces.area_up_to.push_back(total += area);
-  }
-  if (faces.triangles.empty()) throw Error(ErrorCode::InvalidInput, "a surface without area has no distances");
-
   const int corner_count = static_cast<int>(soup.indices.size());
   std::vector<int> next(corner_count);
   for (std::size_t p = 0; p < soup.polygon_count(); ++p)
@@ -88,10 +123,13 @@ Faces place(const PolygonSoup& soup, const Frame& frame) {
   const auto from = [&](int c) { return soup.indices[c]; };
   const auto to = [&](int c) { return soup.indices[next[c]]; };
   const EdgeGroups edges = group_edges(static_cast<int>(soup.points.size()), corner_count, from, to);
+  std::vector<char> on_rim(soup.points.size(), 0);
   for (int e = 0; e < edges.count(); ++e) {
     const int a = from(edges.of(e)[0]), b = to(edges.of(e)[0]);
+    if (edges.size(e) % 2) on_rim[a] = on_rim[b] = 1;
     if (edges.size(e) == 1 && faces.points[a] != faces.points[b]) faces.boundary.push_back({a, b, b});
   }
+  add_triangles(soup, on_rim, faces);
   return faces;
 }
 
@@ -120,11 +158,9 @@ Sums over_blocks(std::int64_t count, const Progress& progress, Add add) {
   return sums;
 }
 
-Sums one_direction(const Faces& from, const Faces& to, const DistanceOptions& options, std::uint64_t direction, const Progress& progress) {
-  const SurfaceDistanceQuery query(to.points, to.triangles);
-  progress(0.2);
+Sums sample(const Faces& from, const SurfaceDistanceQuery& to, const DistanceOptions& options, std::uint64_t direction, const Progress& progress) {
   const double total = from.area_up_to.back();
-  Sums sums = over_blocks(options.samples, progress, [&](Sums& block_sums, std::int64_t block, std::int64_t begin, std::int64_t end) {
+  return over_blocks(options.samples, progress, [&](Sums& block_sums, std::int64_t block, std::int64_t begin, std::int64_t end) {
     Random random(options.seed, 2 * static_cast<std::uint64_t>(block) + direction);
     int guess = -1;  // the samples follow the order of the faces, so that the last one is often near
     for (std::int64_t i = begin; i < end; ++i) {
@@ -133,46 +169,25 @@ Sums one_direction(const Faces& from, const Faces& to, const DistanceOptions& op
       const auto& t = from.triangles[std::min<std::size_t>(at, from.triangles.size() - 1)];
       const double r = std::sqrt(random.unit()), s = random.unit();
       const Vec3 p = (1 - r) * from.points[t[0]] + r * (1 - s) * from.points[t[1]] + r * s * from.points[t[2]];
-      const ClosestPoint closest = query.closest(p, guess);
+      const ClosestPoint closest = to.closest(p, guess);
       guess = closest.face;
       block_sums.squares += closest.squared_distance;
       block_sums.distances += std::sqrt(closest.squared_distance);
       block_sums.largest = std::max(block_sums.largest, closest.squared_distance);
     }
   });
-  progress(0.8);
-  std::vector<char> used(from.points.size(), 0);
-  for (const auto& t : from.triangles)
-    for (const int v : t) used[v] = 1;
-  const Sums corners = over_blocks(static_cast<std::int64_t>(from.points.size()), progress, [&](Sums& block_sums, std::int64_t, std::int64_t begin, std::int64_t end) {
-    int guess = -1;
-    for (std::int64_t v = begin; v < end; ++v) {
-      if (!used[v]) continue;
-      const ClosestPoint closest = query.closest(from.points[v], guess);
-      guess = closest.face;
-      block_sums.largest = std::max(block_sums.largest, closest.squared_distance);
-    }
-  });
-  sums.largest = std::max(sums.largest, corners.largest);
-  progress(1);
-  return sums;
 }
 
-double boundary_distance(const Faces& from, const Faces& to, const Progress& progress) {
-  const SurfaceDistanceQuery query(to.points, to.boundary);
-  const Sums sums =
-      over_blocks(static_cast<std::int64_t>(from.boundary.size()), progress, [&](Sums& block_sums, std::int64_t, std::int64_t begin, std::int64_t end) {
-        int guess = -1;
-        for (std::int64_t e = begin; e < end; ++e) {
-          const Vec3 &a = from.points[from.boundary[e][0]], &b = from.points[from.boundary[e][1]];
-          for (int i = 0; i <= 8; ++i) {
-            const ClosestPoint closest = query.closest(a + (b - a) * (i / 8.0), guess);
-            guess = closest.face;
-            block_sums.largest = std::max(block_sums.largest, closest.squared_distance);
-          }
-        }
-      });
-  return std::sqrt(sums.largest);
+// The larger direction; `known` is a distance of some sample.
+HausdorffBounds hausdorff(const SurfaceFaces& a, const SurfaceFaces& b, const SurfaceDistanceQuery& on_a, const SurfaceDistanceQuery& on_b, double known,
+                          const Progress& progress) {
+  HausdorffOptions options;
+  options.known = known;
+  const HausdorffBounds ab = one_sided_hausdorff(a, b, on_b, options, progress);
+  progress(0.5);
+  options.known = ab.reached;
+  const HausdorffBounds ba = one_sided_hausdorff(b, a, on_a, options, progress);
+  return {ba.reached, std::max(ab.at_most, ba.at_most)};
 }
 
 void check(const PolygonSoup& soup) {
@@ -191,8 +206,12 @@ SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, con
   const Frame frame = frame_of(a);
   const Faces fa = place(a, frame), fb = place(b, frame);
   progress(0.1);
-  const Sums ab = one_direction(fa, fb, options, 0, progress.part(0.1, 0.5));
-  const Sums ba = one_direction(fb, fa, options, 1, progress.part(0.5, 0.9));
+  const SurfaceDistanceQuery on_a(fa.points, fa.triangles), on_b(fb.points, fb.triangles);
+  progress(0.2);
+  const Sums ab = sample(fa, on_b, options, 0, progress);
+  progress(0.45);
+  const Sums ba = sample(fb, on_a, options, 1, progress);
+  progress(0.7);
   const double n = static_cast<double>(options.samples);
   SurfaceDistance d;
   d.diagonal = frame.diagonal;
@@ -200,9 +219,15 @@ SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, con
   d.l2_ba = std::sqrt(ba.squares / n);
   d.l2 = std::max(d.l2_ab, d.l2_ba);
   d.mean = std::max(ab.distances, ba.distances) / n;
-  d.hausdorff = std::sqrt(std::max(ab.largest, ba.largest));
-  if (!fa.boundary.empty() && !fb.boundary.empty())
-    d.boundary_hausdorff = std::max(boundary_distance(fa, fb, progress), boundary_distance(fb, fa, progress));
+  const double known = std::sqrt(std::max(ab.largest, ba.largest));
+  const HausdorffBounds bounds = hausdorff({fa.points, fa.triangles, fa.rim}, {fb.points, fb.triangles, fb.rim}, on_a, on_b, known, progress.part(0.7, 0.95));
+  d.hausdorff = bounds.reached;
+  d.hausdorff_bound = bounds.at_most;
+  if (!fa.boundary.empty() && !fb.boundary.empty()) {
+    const std::vector<char> none;
+    const SurfaceDistanceQuery edges_of_a(fa.points, fa.boundary), edges_of_b(fb.points, fb.boundary);
+    d.boundary_hausdorff = hausdorff({fa.points, fa.boundary, none}, {fb.points, fb.boundary, none}, edges_of_a, edges_of_b, 0, progress.part(0.95, 1)).reached;
+  }
   progress(1);
   return d;
 }

@@ -6,11 +6,13 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <set>
 
 #include "generated_surfaces.h"
 #include "layout/decimation.h"
+#include "layouts.h"
 #include "models.h"
 #include "remesh/working_surface.h"
 #include "surface/edit_mesh.h"
@@ -21,12 +23,9 @@ namespace {
 using testing::ball;
 using testing::repaired;
 using testing::torus;
+using testing::unit;
 
-TriangleSurface unit(TriangleSurface s) {
-  const Placement p = placement_of(s.points);
-  for (Vec3& x : s.points) x = p.to_unit(x);
-  return s;
-}
+constexpr double kWhole = std::numeric_limits<double>::infinity();
 
 long euler(const EditMesh& m) {
   long halves = 0, boundary = 0;
@@ -97,49 +96,6 @@ TEST(EditMesh, RandomOperationsKeepTheTopologyAndUndoExactly) {
   }
 }
 
-// Every patch is a disk whose rim is made of its four sides; sides are shared; the patches tile the surface.
-void expect_layout(const TriangleSurface& surface, const PatchedSurface& p) {
-  double before = 0, after = 0;
-  for (const auto& f : surface.faces) before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
-  for (const auto& f : p.mesh.faces) after += (p.mesh.points[f[1]] - p.mesh.points[f[0]]).cross(p.mesh.points[f[2]] - p.mesh.points[f[0]]).norm();
-  EXPECT_NEAR(after, before, 1e-9 * before);
-  std::vector<std::set<int>> vertices(p.patch_count());
-  std::vector<std::set<std::pair<int, int>>> edges(p.patch_count());
-  std::vector<long> faces(p.patch_count(), 0);
-  for (std::size_t f = 0; f < p.mesh.faces.size(); ++f) {
-    const int q = p.patch[f];
-    ASSERT_GE(q, 0);
-    ++faces[q];
-    for (int i = 0; i < 3; ++i) {
-      vertices[q].insert(p.mesh.faces[f][i]);
-      edges[q].insert(std::minmax(p.mesh.faces[f][i], p.mesh.faces[f][(i + 1) % 3]));
-    }
-  }
-  for (int q = 0; q < p.patch_count(); ++q) {
-    EXPECT_EQ(static_cast<long>(vertices[q].size()) - static_cast<long>(edges[q].size()) + faces[q], 1) << "patch " << q << " is no disk";
-    for (int i = 0; i < 4; ++i) {
-      const std::vector<int>& side = p.sides[q][i];
-      ASSERT_GE(side.size(), 2u);
-      EXPECT_EQ(side.back(), p.sides[q][(i + 1) % 4].front());
-      for (std::size_t k = 1; k < side.size(); ++k) EXPECT_TRUE(edges[q].count(std::minmax(side[k - 1], side[k])));
-      const PatchSide other = p.neighbours[q][i];
-      if (other.patch < 0) continue;
-      std::vector<int> reversed = p.sides[other.patch][other.side];
-      std::reverse(reversed.begin(), reversed.end());
-      EXPECT_EQ(reversed, side);
-      EXPECT_EQ(p.neighbours[other.patch][other.side].patch, q);
-      EXPECT_EQ(p.neighbours[other.patch][other.side].side, i);
-    }
-  }
-  // Points lie where their sources say.
-  for (std::size_t v = 0; v < p.mesh.points.size(); ++v) {
-    Vec3 at = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      if (p.source[v].vertices[k] >= 0) at += p.source[v].weights[k] * surface.points[p.source[v].vertices[k]];
-    EXPECT_LT((at - p.mesh.points[v]).norm(), 1e-12);
-  }
-}
-
 TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
   PolygonSoup several = ball(6);
   testing::add(several, ball(5, 0.5, Vec3(4, 0, 0), 0.5));
@@ -150,8 +106,16 @@ TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
       Context context;
       BaseDomainOptions options;
       options.size = size;
-      const PatchedSurface p = make_base_domain(surface, options, Progress(context));
-      expect_layout(surface, p);
+      const BaseDomain base(surface, options, Progress(context));
+      const PatchedSurface p = base.cut(kWhole, Progress(context)).patches;
+      testing::expect_layout(surface, p);
+      // A coarser version of the surface has the same layout.
+      const CutSurface coarse = base.cut(12, Progress(context));
+      testing::expect_layout(coarse.coarse, coarse.patches);
+      EXPECT_EQ(coarse.patches.nodes, p.nodes);
+      EXPECT_EQ(static_cast<std::size_t>(coarse.collapsed.vertex_count), coarse.coarse.points.size());
+      EXPECT_EQ(coarse.log.size() + coarse.coarse.points.size(), surface.points.size());
+      for (std::size_t v = 0; v < coarse.vertex.size(); ++v) EXPECT_EQ(coarse.coarse.points[v], surface.points[coarse.vertex[v]]);
       if (size >= 60) {
         EXPECT_LE(p.patch_count(), size);
       }
@@ -165,7 +129,7 @@ TEST(BaseDomain, ReachesTheSizeAskedForWithCleanValences) {
   Context context;
   BaseDomainOptions options;
   options.size = 100;
-  const PatchedSurface p = make_base_domain(surface, options, Progress(context));
+  const PatchedSurface p = BaseDomain(surface, options, Progress(context)).cut(kWhole, Progress(context)).patches;
   EXPECT_LE(p.patch_count(), 100);
   EXPECT_GE(p.patch_count(), 98);
   std::vector<int> valence(p.node_count, 0);
@@ -182,7 +146,8 @@ TEST(BaseDomain, ASeedDecidesNearTiesAndNothingElse) {
   Context context;
   BaseDomainOptions options;
   options.size = 40;
-  const PatchedSurface a = make_base_domain(surface, options, Progress(context)), b = make_base_domain(surface, options, Progress(context));
+  const auto make = [&] { return BaseDomain(surface, options, Progress(context)).cut(kWhole, Progress(context)).patches; };
+  const PatchedSurface a = make(), b = make();
   EXPECT_EQ(a.nodes, b.nodes);
   EXPECT_EQ(a.mesh.faces, b.mesh.faces);
 }
@@ -192,7 +157,7 @@ TEST(BaseDomain, CancelEndsIt) {
   Context context;
   context.cancel();
   try {
-    make_base_domain(surface, BaseDomainOptions(), Progress(context));
+    BaseDomain(surface, BaseDomainOptions(), Progress(context));
     FAIL() << "not cancelled";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::Cancelled);

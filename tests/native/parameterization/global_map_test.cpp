@@ -4,19 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <memory>
-#include <numbers>
 
 #include "generated_surfaces.h"
 #include "layout/base_domain.h"
+#include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
-#include "remesh/working_surface.h"
 
 namespace hybrid_mesh {
 namespace {
 
 using testing::ball;
+using testing::expect_bijective;
 using testing::repaired;
 using testing::torus;
 
@@ -28,38 +29,14 @@ struct Mapped {
 
 Mapped map_of(const PolygonSoup& soup, double size) {
   Mapped m;
-  m.surface = repaired(soup);
-  const Placement p = placement_of(m.surface.points);
-  for (Vec3& x : m.surface.points) x = p.to_unit(x);
+  m.surface = testing::unit(repaired(soup));
   Context context;
   BaseDomainOptions options;
   options.size = size;
-  m.patches = make_base_domain(m.surface, options, Progress(context));
+  m.patches = BaseDomain(m.surface, options, Progress(context)).cut(std::numeric_limits<double>::infinity(), Progress(context)).patches;
   const auto corners = map_patches(m.patches, Progress(context));
   m.charts = std::make_unique<ChartMesh>(m.patches, corners);
   return m;
-}
-
-// Every triangle counter-clockwise, every vertex wound around once (a cone of k quads: k quarter turns), charts glued consistently.
-void expect_bijective(const ChartMesh& c) {
-  for (int f = 0; f < static_cast<int>(c.mesh.alive.size()); ++f)
-    if (c.mesh.alive[f]) {
-      EXPECT_GT(c.determinant(f), 0);
-    }
-  for (int v = 0; v < static_cast<int>(c.points.size()); ++v) {
-    if (!c.mesh.vertex_alive(v) || c.mesh.is_boundary(v)) continue;
-    const double turns = c.angle_at(v) / (0.5 * std::numbers::pi);
-    EXPECT_NEAR(turns, std::round(turns), 1e-6);
-    if (c.kind[v] != ChartMesh::Kind::Cone) {
-      EXPECT_NEAR(turns, 4, 1e-6);
-    }
-  }
-  for (int h = 0; h < static_cast<int>(c.mesh.origin.size()); ++h) {
-    const int o = c.mesh.opposite[h];
-    if (!c.mesh.alive[h / 3] || o < 0) continue;
-    EXPECT_LT(std::abs(c.gluing[h](c.at(h)) - c.at(EditMesh::next(o))), 1e-9);
-    EXPECT_LT(std::abs(c.gluing[h](c.at(EditMesh::next(h))) - c.at(o)), 1e-9);
-  }
 }
 
 TEST(Transition, InverseAndCompositionAreThoseOfTheMap) {

@@ -73,16 +73,61 @@ TEST_P(RemeshKinds, AreAsGoodFarAwayAndAtAnyScale) {
   }
 }
 
-TEST(Remesh, LevelsAreExactWhenAskedForAndErrorsAreKept) {
+TEST(Remesh, LevelsAreExactWhenAskedFor) {
   RemeshOptions options;
   options.levels = 2;
   options.vertices = 3000;
-  Context a;
-  EXPECT_EQ(remesh(ball(16), options, a).hierarchy.depth(), 2);
-  RemeshOptions bound;
-  bound.error = 2e-3;
-  Context b;
-  EXPECT_LE(remesh(ball(16), bound, b).report["final"]["l2"].get<double>(), 2.2e-3);
+  Context context;
+  EXPECT_EQ(remesh(ball(16), options, context).hierarchy.depth(), 2);
+}
+
+RemeshResult within(const PolygonSoup& soup, double error, std::int64_t vertices = 0, int levels = -1) {
+  RemeshOptions options;
+  options.error = error;
+  options.vertices = vertices;
+  options.levels = levels;
+  Context context;
+  return remesh(soup, options, context);
+}
+
+TEST(Remesh, AnErrorBoundIsMetByFewVertices) {
+  for (const PolygonSoup& soup : {ball(16), torus(60, 30)})
+    for (const double error : {1e-2, 2e-3, 5e-4}) {
+      const RemeshResult r = within(soup, error);
+      EXPECT_LE(r.report["final"]["l2"].get<double>(), error);
+      EXPECT_TRUE(r.report["final"]["error_bound_met"].get<bool>());
+      EXPECT_TRUE(find_defects(r.hierarchy).empty());
+      EXPECT_EQ(r.report["base"]["quads"].get<int>(), r.hierarchy.base_count());
+      // Half as many do not meet it, as far as the topology has a mesh of so few.
+      const auto half = static_cast<std::int64_t>(r.final_mesh.points.size() / 2);
+      if (half > 30) {
+        EXPECT_GT(run(soup, half, Refinement::Uniform).report["final"]["l2"].get<double>(), error);
+      }
+    }
+}
+
+TEST(Remesh, AnErrorBoundHoldsWithinTheOtherBounds) {
+  const PolygonSoup soup = torus(60, 30);
+  const RemeshResult alone = within(soup, 1e-3), both = within(soup, 1e-3, 20000), levels = within(soup, 1e-3, 0, 2);
+  EXPECT_LE(both.report["final"]["l2"].get<double>(), 1e-3);
+  EXPECT_LT(both.final_mesh.points.size(), 2 * alone.final_mesh.points.size());
+  EXPECT_LE(levels.report["final"]["l2"].get<double>(), 1e-3);
+  EXPECT_EQ(levels.hierarchy.depth(), 2);
+  // The bound on the vertices goes before the one on the error.
+  const RemeshResult few = within(soup, 1e-6, 500);
+  EXPECT_LE(few.final_mesh.points.size(), 500u);
+  EXPECT_GE(few.final_mesh.points.size(), 490u);
+  EXPECT_FALSE(few.report["final"]["error_bound_met"].get<bool>());
+}
+
+TEST(Remesh, AnErrorBoundOutOfReachIsRefused) {
+  try {
+    within(ball(16), 1e-12);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+    EXPECT_NE(std::string(e.what()).find("out of reach"), std::string::npos);
+  }
 }
 
 TEST(Remesh, RefusesWhatItCannotDoWithTheReason) {
