@@ -18,6 +18,7 @@ namespace {
 struct Candidate {
   PatchRegion region;
   LayoutEdit edit;
+  int irregular = 0;  // further irregular nodes
   double excess = 0;  // energy of the region's patches beyond an isometry's
   double gain = 0;    // energy that the edit saves
 };
@@ -96,8 +97,10 @@ class LayoutSearch {
       for (const int n : s.nodes[q]) around[n].push_back(q);
     std::vector<Candidate> found;
     const auto add = [&](const PatchRegion& region, const LayoutEdit& edit) {
-      if (!keeps_valences(s, region, edit, valence, on_boundary)) return;
+      const std::optional<int> irregular = irregular_growth(s, region, edit, valence, on_boundary);
+      if (!irregular) return;
       Candidate c{region, edit};
+      c.irregular = *irregular;
       for (const int q : region.patches) c.excess += energy_[q];
       found.push_back(std::move(c));
     };
@@ -222,7 +225,7 @@ class LayoutSearch {
     return !chosen.empty();
   }
 
-  double worth(const Candidate& c) const { return c.gain - options_.price * c.edit.growth(); }
+  double worth(const Candidate& c) const { return c.gain - options_.price * c.edit.growth() - options_.irregular_price * c.irregular; }
 
   const std::vector<std::array<int, 3>>& faces_;
   const LayoutSearchOptions& options_;

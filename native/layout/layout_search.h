@@ -13,7 +13,8 @@ struct LayoutSearchOptions {
   GlobalMapOptions map;
   int quads = 0;           // the layout may grow up to so many
   double price = 0.1;      // energy that a further quad must save, in quads
-  int rounds = 3;
+  double irregular_price = 0.06;  // ... and a further irregular node
+  int rounds = 4;
   int trials = 80;         // a round
 };
 

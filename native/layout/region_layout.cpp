@@ -104,7 +104,7 @@ std::optional<LayoutEdit> ring_edit(const PatchedSurface& surface, const PatchRe
   return edit;
 }
 
-bool keeps_valences(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence, const std::vector<char>& on_boundary) {
+std::optional<int> irregular_growth(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence, const std::vector<char>& on_boundary) {
   const int n = static_cast<int>(region.corners.size());
   std::vector<int> change(n, 0), fresh(edit.inner_nodes, 0);
   for (const auto& quad : edit.quads)
@@ -114,12 +114,19 @@ bool keeps_valences(const PatchedSurface& surface, const PatchRegion& region, co
       const auto at = std::find(region.corners.begin(), region.corners.end(), node);
       if (at != region.corners.end()) --change[at - region.corners.begin()];
     }
+  int growth = 0;
   for (int k = 0; k < n; ++k) {
     const int node = region.corners[k], after = valence[node] + change[k];
     if (change[k] == 0) continue;
-    if (on_boundary[node] ? after < 1 || after > 4 : after < 3 || after > 6) return false;
+    if (on_boundary[node] ? after < 1 || after > 4 : after < 3 || after > 6) return std::nullopt;
+    if (!on_boundary[node]) growth += (after != 4) - (valence[node] != 4);
   }
-  return std::all_of(fresh.begin(), fresh.end(), [](int v) { return v >= 3 && v <= 6; });
+  for (const int v : fresh) {
+    if (v < 3 || v > 6) return std::nullopt;
+    growth += v != 4;
+  }
+  for (const int node : region.inner_nodes) growth -= valence[node] != 4;
+  return growth;
 }
 
 namespace {

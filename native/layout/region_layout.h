@@ -39,8 +39,9 @@ LayoutEdit chord_edit(const PatchRegion& region, int from);
 // The region's quads shrunk, with a ring of quads around them: skin for a feature that sticks out of the region. One quad, two neighbours, or the quads around a node.
 std::optional<LayoutEdit> ring_edit(const PatchedSurface& surface, const PatchRegion& region);
 
-// Would all inner nodes have 3 to 6 quads after the edit, none of them made worse in vain, and the boundary's at most four?
-bool keeps_valences(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence, const std::vector<char>& on_boundary);
+// By how many inner nodes with other than four quads would the edit raise their number? Nothing if it changed an inner node to fewer than 3 or more than 6 quads, or a boundary
+// node to more than 4. `valence` and `on_boundary`: of the surface's nodes.
+std::optional<int> irregular_growth(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence, const std::vector<char>& on_boundary);
 // Quads around each node.
 std::vector<int> node_valences(const PatchedSurface& surface);
 std::vector<char> boundary_nodes(const PatchedSurface& surface);

@@ -239,9 +239,8 @@ std::vector<double> smoothness_at(const QuadMesh& mesh, const FitOptions& option
     const double jacobian = mesh.offsets[f + 1] - mesh.offsets[f] == 4 ? scaled_jacobian(mesh, f) : 0.5;
     for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) worst[mesh.indices[i]] = std::min(worst[mesh.indices[i]], jacobian);
   }
-  constexpr double poor = 0.3, square = 0.9;
   const double ratio = options.square_smoothness / options.smoothness;
-  for (std::size_t v = 0; v < worst.size(); ++v) smoothness[v] *= std::pow(ratio, std::clamp((worst[v] - poor) / (square - poor), 0.0, 1.0));
+  for (std::size_t v = 0; v < worst.size(); ++v) smoothness[v] *= std::pow(ratio, std::clamp((worst[v] - options.poor) / (options.square - options.poor), 0.0, 1.0));
   return smoothness;
 }
 

@@ -20,6 +20,7 @@ struct FitOptions {
   double tangential = 0.01;       // weight of the distance along the surface against that along its normal
   double smoothness = 0.03;       // weight of the Laplacian's tangential part, which keeps quads from folding
   double square_smoothness = 0.03;  // the same where quads are square: less lets their vertices slide to where the surface bends
+  double poor = 0.3, square = 0.9;  // scaled Jacobians: of quads that need all of the smoothness, of those that count as square
   int iterations = 60;            // of conjugate gradients a round, at most
 };
 

@@ -28,6 +28,14 @@ BaseDomain base_of(const TriangleSurface& surface, double size) {
   return BaseDomain(surface, options, Progress(context));
 }
 
+int irregular_nodes(const PatchedSurface& s) {
+  const std::vector<int> valence = node_valences(s);
+  const std::vector<char> on_boundary = boundary_nodes(s);
+  int count = 0;
+  for (int n = 0; n < s.node_count; ++n) count += !on_boundary[n] && valence[n] != 4;
+  return count;
+}
+
 // A random edit of a random region: a side turned, a node turned, or a ring put in.
 std::optional<LayoutEdit> random_edit(const PatchedSurface& s, std::mt19937& random) {
   const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -51,7 +59,7 @@ std::optional<LayoutEdit> random_edit(const PatchedSurface& s, std::mt19937& ran
     edit = star_edit(*region, pick(2));
   else
     edit = ring_edit(s, *region);
-  if (!edit || !keeps_valences(s, *region, *edit, node_valences(s), boundary_nodes(s))) return std::nullopt;
+  if (!edit || !irregular_growth(s, *region, *edit, node_valences(s), boundary_nodes(s))) return std::nullopt;
   return edit;
 }
 
@@ -70,7 +78,8 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
       const std::optional<LayoutEdit> edit = random_edit(fine.surface, random);
       if (!edit) continue;
       ++applied;
-      const int before = fine.surface.patch_count();
+      const int before = fine.surface.patch_count(), irregular = irregular_nodes(fine.surface);
+      const int growth = *irregular_growth(fine.surface, *make_region(fine.surface, edit->patches, edit->start), *edit, node_valences(fine.surface), boundary_nodes(fine.surface));
       for (MappedSurface* m : {&fine, &coarse}) {
         const std::vector<int> fresh = apply_edit(*m, *edit);
         map_patches(m->surface, fresh, m->corners, Progress(context));
@@ -78,6 +87,7 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
         testing::expect_bijective(ChartMesh(m->surface, m->corners));
       }
       EXPECT_EQ(fine.surface.patch_count(), before + edit->growth());
+      EXPECT_EQ(irregular_nodes(fine.surface), irregular + growth);
       testing::expect_layout(surface, fine.surface);
       testing::expect_layout(cut.coarse, coarse.surface);
       EXPECT_EQ(coarse.surface.nodes, fine.surface.nodes);
