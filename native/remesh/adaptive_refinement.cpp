@@ -194,7 +194,6 @@ class AdaptiveRefinement {
     SurfaceFitOptions options;
     options.first.rounds = 2;
     options.first.square_smoothness = options.first.smoothness / 3;
-    options.unfold = 0.6;
     return options;
   }
 

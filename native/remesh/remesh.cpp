@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -78,6 +79,7 @@ class Remesher {
     read_surface();
     build_base();
     build_levels();
+    try_another_base();
     finish();
     return std::move(result_);
   }
@@ -199,7 +201,7 @@ class Remesher {
     BaseDomainOptions base_options;
     base_options.size = budget_.base_size;
     base_options.boundary_side = budget_.boundary_side;
-    base_options.seed = options_.seed + 1000003ull * attempt;
+    base_options.seed = options_.seed + 1000003ull * (attempt + first_attempt_);
     // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
     if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= 4;
     const BaseDomain base(working_.mesh, base_options, progress_.part(0.05, 0.15));
@@ -414,6 +416,38 @@ class Remesher {
     watch_.stop();
   }
 
+  // A base may have missed a tip by bad luck, which shows in the fit: a point of the surface is farther off than a quad is wide. Then another base is tried, and the better one kept.
+  void try_another_base() {
+    if (options_.error > 0) return;
+    const QuadMesh& mesh = result_.final_mesh;
+    double area = 0;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f)
+      for (std::int64_t i = mesh.offsets[f] + 1; i + 1 < mesh.offsets[f + 1]; ++i) {
+        const Vec3& origin = mesh.points[mesh.indices[mesh.offsets[f]]];
+        area += 0.5 * (mesh.points[mesh.indices[i]] - origin).cross(mesh.points[mesh.indices[i + 1]] - origin).norm();
+      }
+    if (final_distance_.hausdorff < 1.25 * std::sqrt(area / static_cast<double>(mesh.face_count()))) return;
+    HybridMesh hierarchy = result_.hierarchy;
+    QuadMesh final_mesh = mesh;
+    const Json base = report_["base"], levels = report_["levels"];
+    const SurfaceDistance distance = final_distance_;
+    bool better = false;
+    first_attempt_ = 8;
+    try {
+      build_base();
+      build_levels();
+      better = final_distance_.hausdorff < distance.hausdorff;
+    } catch (const Error& e) {
+      if (e.code() == ErrorCode::Cancelled) throw;
+    }
+    if (better) return;
+    result_.hierarchy = std::move(hierarchy);
+    result_.final_mesh = std::move(final_mesh);
+    report_["base"] = base;
+    report_["levels"] = levels;
+    final_distance_ = distance;
+  }
+
   // --- report ------------------------------------------------------------------------------------------------------------------------
   // The last level is the final mesh, which is measured this once.
   Json describe_level(int j, bool last, const QuadMesh& mesh, const Progress& progress) {
@@ -523,6 +557,7 @@ class Remesher {
   // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
   std::int64_t aim_ = 0;
   int levels_less_ = 0;
+  int first_attempt_ = 0;
 };
 
 }  // namespace
