@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
-#include "parameterization/star_relaxation.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -49,16 +50,17 @@ class LayoutSearch {
         best = charts;
         if (round == options_.rounds) break;
         glue(charts, part.part(0.4, 0.5));
+        std::vector<Candidate> candidates = find_candidates();
+        tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+          part.check();
+          candidates[i].gain = measure_gain(candidates[i], part.part(0.5, 0.5));
+        });
+        if (!apply_best(candidates, part)) break;
       } catch (const Error& e) {
+        // What was found before stays.
         if (e.code() != ErrorCode::Internal || !best) throw;
         break;
       }
-      std::vector<Candidate> candidates = find_candidates();
-      tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
-        part.check();
-        candidates[i].gain = measure_gain(candidates[i], part.part(0.5, 0.5));
-      });
-      if (!apply_best(candidates, part)) break;
       part(1);
     }
     return {std::move(*best), std::move(best_edits)};
@@ -95,6 +97,10 @@ class LayoutSearch {
     std::vector<std::vector<int>> around(s.node_count);
     for (int q = 0; q < s.patch_count(); ++q)
       for (const int n : s.nodes[q]) around[n].push_back(q);
+    // Two nodes are joined by one side at most, or the base's quads would be no manifold mesh.
+    std::set<std::pair<int, int>> joined;
+    for (const auto& nodes : s.nodes)
+      for (int i = 0; i < 4; ++i) joined.insert(std::minmax(nodes[i], nodes[(i + 1) % 4]));
     std::vector<Candidate> found;
     const auto add = [&](const PatchRegion& region, const LayoutEdit& edit) {
       const std::optional<int> irregular = irregular_growth(s, region, edit, valence, on_boundary);
@@ -120,8 +126,8 @@ class LayoutSearch {
         if (const auto region = make_region(s, {q, other.patch}); region && region->corners.size() == 6) {
           // Corner `now` is where the side between them starts today.
           const int now = static_cast<int>(std::find(region->corners.begin(), region->corners.end(), s.nodes[q][i]) - region->corners.begin());
-          add(*region, chord_edit(*region, (now + 1) % 3));
-          add(*region, chord_edit(*region, (now + 2) % 3));
+          for (const int from : {(now + 1) % 3, (now + 2) % 3})
+            if (!joined.count(std::minmax(region->corners[from], region->corners[from + 3]))) add(*region, chord_edit(*region, from));
         }
       }
     }
@@ -149,28 +155,23 @@ class LayoutSearch {
     return found;
   }
 
-  // Patches that share a node with the region, and those beside them.
-  std::vector<int> surroundings(const PatchRegion& region, int rings) const {
+  // The region's patches, then those that share a node with it.
+  std::vector<int> with_surroundings(const PatchRegion& region) const {
     const PatchedSurface& s = mapped_.surface;
-    std::vector<char> chosen(s.patch_count(), 0), node(s.node_count, 0);
-    for (const int q : region.patches) chosen[q] = 1;
-    for (int ring = 0; ring < rings; ++ring) {
-      std::fill(node.begin(), node.end(), 0);
-      for (int q = 0; q < s.patch_count(); ++q)
-        if (chosen[q])
-          for (const int n : s.nodes[q]) node[n] = 1;
-      for (int q = 0; q < s.patch_count(); ++q)
-        for (const int n : s.nodes[q])
-          if (node[n]) chosen[q] = 1;
+    std::vector<char> in_region(s.patch_count(), 0), node(s.node_count, 0);
+    for (const int q : region.patches) {
+      in_region[q] = 1;
+      for (const int n : s.nodes[q]) node[n] = 1;
     }
     std::vector<int> patches = region.patches;
     for (int q = 0; q < s.patch_count(); ++q)
-      if (chosen[q] && std::find(region.patches.begin(), region.patches.end(), q) == region.patches.end()) patches.push_back(q);
+      if (!in_region[q] && std::any_of(s.nodes[q].begin(), s.nodes[q].end(), [&](int n) { return node[n]; })) patches.push_back(q);
     return patches;
   }
 
+  // How much energy the edit saves in the region and its surroundings, once they have relaxed within their rim.
   double measure_gain(const Candidate& candidate, const Progress& progress) const {
-    const std::vector<int> patches = surroundings(candidate.region, 1);
+    const std::vector<int> patches = with_surroundings(candidate.region);
     double before = 0;
     for (const int q : patches) before += energy_[q];
     MappedSurface local;
@@ -210,7 +211,7 @@ class LayoutSearch {
     for (const Candidate& c : candidates) {
       if (worth(c) <= 0.05) break;
       if (size + c.edit.growth() > options_.quads) continue;
-      const std::vector<int> patches = surroundings(c.region, 1);
+      const std::vector<int> patches = with_surroundings(c.region);
       if (std::any_of(patches.begin(), patches.end(), [&](int q) { return touched[q]; })) continue;
       for (const int q : patches) touched[q] = 1;
       size += c.edit.growth();

@@ -36,6 +36,17 @@ int irregular_nodes(const PatchedSurface& s) {
   return count;
 }
 
+// No two sides join the same nodes.
+void expect_simple(const PatchedSurface& s) {
+  std::set<std::pair<int, int>> joined;
+  for (int q = 0; q < s.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i) {
+      const PatchSide other = s.neighbours[q][i];
+      if (other.patch >= 0 && (other.patch < q || (other.patch == q && other.side < i))) continue;
+      EXPECT_TRUE(joined.insert(std::minmax(s.nodes[q][i], s.nodes[q][(i + 1) % 4])).second);
+    }
+}
+
 // A random edit of a random region: a side turned, a node turned, or a ring put in.
 std::optional<LayoutEdit> random_edit(const PatchedSurface& s, std::mt19937& random) {
   const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -155,6 +166,7 @@ TEST(BaseMap, IsBijectiveAndCarriedToEveryVertex) {
     EXPECT_LE(map.layout.patch_count(), 44);
     EXPECT_GE(map.layout.patch_count(), base.quads());
     testing::expect_bijective(map.charts);
+    expect_simple(map.layout);
     const std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, surface.faces, Progress(context));
     double area = 0, whole = 0;
     for (const PatchMap& m : maps) {
@@ -186,6 +198,7 @@ TEST(LayoutSearch, LowersTheEnergyWithinTheSizeAllowed) {
     const LayoutSearchResult found = search_layout(cut.patches, cut.coarse.faces, options, Progress(context));
     EXPECT_LE(cut.patches.patch_count(), std::max(quads, base.quads()));
     testing::expect_bijective(found.charts);
+    expect_simple(cut.patches);
     Distortion density{options.map.theta};
     double sum = 0, area = 0;
     for (int f = 0; f < static_cast<int>(found.charts.mesh.alive.size()); ++f) {
