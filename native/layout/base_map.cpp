@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <optional>
-#include <cstdlib>
 #include <utility>
 
 #include "parameterization/initial_map.h"
@@ -53,7 +52,7 @@ ChartMesh smooth_edited(PatchedSurface& surface, const std::vector<LayoutEdit>& 
       if (e.code() != ErrorCode::Internal || vertices_a_quad == kInfinity) throw;
     }
   }
-  std::abort();  // not reached
+  throw Error(ErrorCode::Internal, "no map of the base was tried");
 }
 
 }  // namespace
@@ -81,7 +80,7 @@ BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, cons
       if (e.code() != ErrorCode::Internal || vertices_a_quad == kInfinity) throw;
     }
   }
-  std::abort();  // not reached
+  throw Error(ErrorCode::Internal, "no map of the base was tried");
 }
 
 }  // namespace hybrid_mesh

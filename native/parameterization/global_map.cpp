@@ -22,8 +22,8 @@ class MapSmoothing {
 
   GlobalMapReport smooth(const PatchedSurface& surface, const Progress& progress) {
     progress.check();
-    find_original(surface);
-    merge_insertions(surface, 0.01);
+    take_sources(surface);
+    merge_insertions(0.01);
     progress(0.1);
     relax_bad_stars(0.02, 30, progress.part(0.1, 0.2));
     report_.energy_before = mean_energy();
@@ -45,21 +45,21 @@ class MapSmoothing {
   }
 
   // Merges every inserted point; see uncut_map().
-  std::vector<int> uncut(PatchedSurface surface, const Progress& progress) {
+  std::vector<int> uncut(const PatchedSurface& surface, const Progress& progress) {
     progress.check();
-    find_original(surface);
-    merge_insertions(surface, 0.01);
+    take_sources(surface);
+    merge_insertions(0.01);
     for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-      if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Cone && is_inserted(surface, v)) settle(surface, v);
+      if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Cone && is_inserted(v)) settle(v);
     // Triangles without area may come in between: what is left in the end are the triangles that were cut.
-    merge_insertions(surface, 0.01);
-    merge_insertions(surface, 1e-4, -1);
-    merge_by_force(surface, progress);
+    merge_insertions(0.01);
+    merge_insertions(1e-4, -1);
+    merge_by_force(progress);
     relax_bad_stars(0.02, 10, progress);
     progress(1);
     std::vector<int> point(c_.points.size(), -1);
     for (std::size_t v = 0; v < point.size(); ++v)
-      if (c_.mesh.vertex_alive(static_cast<int>(v))) point[v] = surface.source[v].vertices[0];
+      if (c_.mesh.vertex_alive(static_cast<int>(v))) point[v] = source_[v].vertices[0];
     return point;
   }
 
@@ -95,16 +95,17 @@ class MapSmoothing {
 
   // --- merging the points that cutting inserted --------------------------------------------------------------------------------
   // Cones keep to points of the surface that was cut, so that inserted ones can be merged away.
-  void find_original(const PatchedSurface& surface) {
-    original_.resize(c_.points.size());
-    for (std::size_t v = 0; v < original_.size(); ++v) original_[v] = !is_inserted(surface, static_cast<int>(v));
+  void take_sources(const PatchedSurface& surface) {
+    source_ = surface.source;
+    original_.resize(source_.size());
+    for (std::size_t v = 0; v < original_.size(); ++v) original_[v] = !is_inserted(static_cast<int>(v));
   }
-  static bool is_inserted(const PatchedSurface& surface, int v) { return surface.source[v].vertices[1] >= 0; }
+  bool is_inserted(int v) const { return source_[v].vertices[1] >= 0; }
 
   // A point inside an edge or a face of the surface that was cut goes to a neighbour on the same edge or face: the surface stays the same set of points.
-  bool merges_in_place(const PatchedSurface& surface, int h) const {
-    const PointSource& p = surface.source[c_.mesh.from(h)];
-    const PointSource& q = surface.source[c_.mesh.to(h)];
+  bool merges_in_place(int h) const {
+    const PointSource& p = source_[c_.mesh.from(h)];
+    const PointSource& q = source_[c_.mesh.to(h)];
     for (const int w : q.vertices)
       if (w >= 0 && std::find(p.vertices.begin(), p.vertices.end(), w) == p.vertices.end()) return false;
     return true;
@@ -146,10 +147,10 @@ class MapSmoothing {
     return after <= before * (1 + 1e-9);
   }
 
-  void merge_insertions(const PatchedSurface& surface, double least_determinant, double least_shape = 1e-6) {
+  void merge_insertions(double least_determinant, double least_shape = 1e-6) {
     std::vector<int> inserted;
     for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-      if (c_.mesh.vertex_alive(v) && is_inserted(surface, v)) inserted.push_back(v);
+      if (c_.mesh.vertex_alive(v) && is_inserted(v)) inserted.push_back(v);
     for (int pass = 0; pass < 6 && !inserted.empty(); ++pass) {
       std::vector<int> left;
       for (const int v : inserted) {
@@ -158,7 +159,7 @@ class MapSmoothing {
         int h = c_.mesh.out[v];
         do {
           const double l = (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm();
-          if (l < shortest && merges_in_place(surface, h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape) && (least_shape < 0 || keeps_area(h)))
+          if (l < shortest && merges_in_place(h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape) && (least_shape < 0 || keeps_area(h)))
             shortest = l, best = h;
           if (c_.mesh.is_boundary(v)) break;
           h = c_.mesh.ccw(h);
@@ -174,14 +175,14 @@ class MapSmoothing {
   }
 
   // A cone at an inserted point takes the place of a neighbour, a point of the surface: that is merged into it, and its name and place on the surface go over.
-  void settle(PatchedSurface& surface, int cone) {
-    if (!is_inserted(surface, cone)) return;
+  void settle(int cone) {
+    if (!is_inserted(cone)) return;
     std::vector<std::pair<double, int>> halves;
     int h = c_.mesh.out[cone];
     do {
       const int to_cone = c_.mesh.opposite[h];
       const int w = c_.mesh.to(h);
-      if (to_cone >= 0 && !is_inserted(surface, w) && c_.kind[w] == ChartMesh::Kind::Free && merges_in_place(surface, h) && c_.can_collapse(to_cone))
+      if (to_cone >= 0 && !is_inserted(w) && c_.kind[w] == ChartMesh::Kind::Free && merges_in_place(h) && c_.can_collapse(to_cone))
         halves.push_back({-least_determinant_after(to_cone), to_cone});
       h = c_.mesh.ccw(h);
     } while (h != c_.mesh.out[cone]);
@@ -198,7 +199,7 @@ class MapSmoothing {
         if (rings > 0) grow(region, 1);
         if (!stars_.unfold(region)) continue;
         c_.points[cone] = c_.points[w];
-        surface.source[cone] = surface.source[w];
+        source_[cone] = source_[w];
         original_[cone] = 1;
         return;
       }
@@ -213,12 +214,12 @@ class MapSmoothing {
 
   // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones near it, which may ask a triangle for an
   // angle that none can have, give way.
-  void merge_by_force(const PatchedSurface& surface, const Progress& progress) {
+  void merge_by_force(const Progress& progress) {
     for (int pass = 0; pass < 8; ++pass) {
       progress.check();
       std::vector<int> left;
       for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-        if (c_.mesh.vertex_alive(v) && is_inserted(surface, v) && !unfolds_when_merged(surface, v)) left.push_back(v);
+        if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v)) left.push_back(v);
       if (left.empty()) return;
       for (const int v : left) {
         std::vector<int> region{v};
@@ -230,11 +231,12 @@ class MapSmoothing {
           for (const int w : region)
             if (c_.movable(w)) stars_.relax(w, true);
       }
-      merge_insertions(surface, 1e-4, -1);
+      merge_insertions(1e-4, -1);
     }
     throw Error(ErrorCode::Internal, "a cut of the surface cannot be undone in the map");
   }
 
+  // Adds rings of neighbours.
   void grow(std::vector<int>& region, int rings) const {
     std::vector<int> ring;
     for (; rings > 0; --rings) {
@@ -247,11 +249,11 @@ class MapSmoothing {
     }
   }
 
-  bool unfolds_when_merged(const PatchedSurface& surface, int v) {
+  bool unfolds_when_merged(int v) {
     std::vector<std::pair<double, int>> halves;
     int h = c_.mesh.out[v];
     do {
-      if (merges_in_place(surface, h) && c_.can_collapse(h)) halves.push_back({-least_determinant_after(h), h});
+      if (merges_in_place(h) && c_.can_collapse(h)) halves.push_back({-least_determinant_after(h), h});
       if (c_.mesh.is_boundary(v)) break;
       h = c_.mesh.ccw(h);
     } while (h >= 0 && h != c_.mesh.out[v]);
@@ -443,15 +445,8 @@ class MapSmoothing {
 
   // The star of v has no kernel: its neighbours are moved until it has one.
   void untangle(int v) {
-    std::vector<int> region{v}, ring;
-    for (int grow = 0; grow < 2; ++grow) {
-      const std::vector<int> seed = region;
-      for (const int w : seed) {
-        c_.mesh.ring(w, ring);
-        for (const int x : ring)
-          if (std::find(region.begin(), region.end(), x) == region.end()) region.push_back(x);
-      }
-    }
+    std::vector<int> region{v};
+    grow(region, 2);
     if (stars_.unfold(region)) return;
     throw Error(ErrorCode::Internal, "the map could not be carried to a finer mesh");
   }
@@ -586,7 +581,8 @@ class MapSmoothing {
   StarRelaxation stars_;
   GlobalMapReport report_;
   std::vector<int> log_;
-  std::vector<char> original_;  // per vertex, empty: all
+  std::vector<PointSource> source_;  // per vertex; empty where nothing was cut
+  std::vector<char> original_;       // per vertex whether it is a point of the surface that was cut; empty: all are
 };
 
 }  // namespace

@@ -317,6 +317,22 @@ class Remesher {
     return options_.vertices > 0 ? options_.vertices : std::max<std::int64_t>(1000000, static_cast<std::int64_t>(result_.repaired.points.size()));
   }
 
+  // A remesh that is set aside while another is tried.
+  struct Made {
+    HybridMesh hierarchy;
+    QuadMesh mesh;
+    Json base, levels;
+    SurfaceDistance distance;
+  };
+  Made set_aside() { return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_}; }
+  void put_back(Made made) {
+    result_.hierarchy = std::move(made.hierarchy);
+    result_.final_mesh = std::move(made.mesh);
+    report_["base"] = std::move(made.base);
+    report_["levels"] = std::move(made.levels);
+    final_distance_ = made.distance;
+  }
+
   // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.
   Attempt climb() {
     const bool one_level = options_.levels >= 0;
@@ -344,15 +360,11 @@ class Remesher {
     for (int step = 0; step < 4 && any_base && (enough.vertices > 0 || may_grow); ++step) {
       aim_ = next_aim(enough, too_few);
       if (aim_ > most_vertices() || (enough.vertices > 0 && (aim_ > 0.93 * enough.vertices || aim_ < 1.03 * too_few.vertices))) break;
-      Made before{std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"]};
+      Made before = set_aside();
       const Attempt made = attempt_aim();
       const bool met = made.vertices > 0 && made.l2 <= options_.error;
       const bool better = enough.vertices == 0 ? made.vertices > 0 : met && made.vertices < enough.vertices;
-      if (!better) {
-        result_.hierarchy = std::move(before.hierarchy);
-        result_.final_mesh = std::move(before.mesh);
-        report_["base"] = std::move(before.base);
-      }
+      if (!better) put_back(std::move(before));
       if (made.vertices == 0 || (met && !better)) break;
       (met ? enough : too_few) = made;
     }
@@ -374,12 +386,6 @@ class Remesher {
     }
     return static_cast<std::int64_t>(1.03 * vertices);  // rather met than just missed
   }
-
-  struct Made {
-    HybridMesh hierarchy;
-    QuadMesh mesh;
-    Json base;
-  };
 
   // A mesh on a base that is planned for `aim_` vertices; no vertices if no base of that size can be made. Where the error is far above what
   // the size promises, the base is too coarse for the shape and has lost a tip: then the same on a base of four times as many quads, from now on.
@@ -427,25 +433,17 @@ class Remesher {
         area += 0.5 * (mesh.points[mesh.indices[i]] - origin).cross(mesh.points[mesh.indices[i + 1]] - origin).norm();
       }
     if (final_distance_.hausdorff < 1.25 * std::sqrt(area / static_cast<double>(mesh.face_count()))) return;
-    HybridMesh hierarchy = result_.hierarchy;
-    QuadMesh final_mesh = mesh;
-    const Json base = report_["base"], levels = report_["levels"];
-    const SurfaceDistance distance = final_distance_;
+    Made before = set_aside();
     bool better = false;
     first_attempt_ = 8;
     try {
       build_base();
       build_levels();
-      better = final_distance_.hausdorff < distance.hausdorff;
+      better = final_distance_.hausdorff < before.distance.hausdorff;
     } catch (const Error& e) {
       if (e.code() == ErrorCode::Cancelled) throw;
     }
-    if (better) return;
-    result_.hierarchy = std::move(hierarchy);
-    result_.final_mesh = std::move(final_mesh);
-    report_["base"] = base;
-    report_["levels"] = levels;
-    final_distance_ = distance;
+    if (!better) put_back(std::move(before));
   }
 
   // --- report ------------------------------------------------------------------------------------------------------------------------
@@ -557,7 +555,7 @@ class Remesher {
   // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
   std::int64_t aim_ = 0;
   int levels_less_ = 0;
-  int first_attempt_ = 0;
+  int first_attempt_ = 0;  // of try_base(): decides near-ties
 };
 
 }  // namespace

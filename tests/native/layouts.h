@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -12,6 +13,9 @@
 #include "remesh/working_surface.h"
 
 namespace hybrid_mesh::testing {
+
+// Vertices a quad of a base that is cut out of the surface itself, not out of a coarser version.
+inline constexpr double whole_surface = std::numeric_limits<double>::infinity();
 
 inline TriangleSurface unit(TriangleSurface s) {
   const Placement p = placement_of(s.points);

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <limits>
 #include <random>
 #include <set>
 
@@ -24,8 +23,7 @@ using testing::ball;
 using testing::repaired;
 using testing::torus;
 using testing::unit;
-
-constexpr double kWhole = std::numeric_limits<double>::infinity();
+using testing::whole_surface;
 
 long euler(const EditMesh& m) {
   long halves = 0, boundary = 0;
@@ -107,7 +105,7 @@ TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
       BaseDomainOptions options;
       options.size = size;
       const BaseDomain base(surface, options, Progress(context));
-      const PatchedSurface p = base.cut(kWhole, Progress(context)).patches;
+      const PatchedSurface p = base.cut(whole_surface, Progress(context)).patches;
       testing::expect_layout(surface, p);
       // A coarser version of the surface has the same layout.
       const CutSurface coarse = base.cut(12, Progress(context));
@@ -129,7 +127,7 @@ TEST(BaseDomain, ReachesTheSizeAskedForWithCleanValences) {
   Context context;
   BaseDomainOptions options;
   options.size = 100;
-  const PatchedSurface p = BaseDomain(surface, options, Progress(context)).cut(kWhole, Progress(context)).patches;
+  const PatchedSurface p = BaseDomain(surface, options, Progress(context)).cut(whole_surface, Progress(context)).patches;
   EXPECT_LE(p.patch_count(), 100);
   EXPECT_GE(p.patch_count(), 98);
   std::vector<int> valence(p.node_count, 0);
@@ -146,7 +144,7 @@ TEST(BaseDomain, ASeedDecidesNearTiesAndNothingElse) {
   Context context;
   BaseDomainOptions options;
   options.size = 40;
-  const auto make = [&] { return BaseDomain(surface, options, Progress(context)).cut(kWhole, Progress(context)).patches; };
+  const auto make = [&] { return BaseDomain(surface, options, Progress(context)).cut(whole_surface, Progress(context)).patches; };
   const PatchedSurface a = make(), b = make();
   EXPECT_EQ(a.nodes, b.nodes);
   EXPECT_EQ(a.mesh.faces, b.mesh.faces);

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <random>
 
 #include "generated_surfaces.h"
@@ -18,8 +17,7 @@ using testing::ball;
 using testing::repaired;
 using testing::torus;
 using testing::unit;
-
-constexpr double kWhole = std::numeric_limits<double>::infinity();
+using testing::whole_surface;
 
 BaseDomain base_of(const TriangleSurface& surface, double size) {
   Context context;
@@ -80,7 +78,7 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
     const TriangleSurface surface = unit(repaired(soup));
     const BaseDomain base = base_of(surface, 40);
     Context context;
-    MappedSurface fine{base.cut(kWhole, Progress(context)).patches, {}};
+    MappedSurface fine{base.cut(whole_surface, Progress(context)).patches, {}};
     CutSurface cut = base.cut(12, Progress(context));
     MappedSurface coarse{cut.patches, {}};
     for (MappedSurface* m : {&fine, &coarse}) m->corners = map_patches(m->surface, Progress(context));
@@ -111,7 +109,7 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
 TEST(PatchedPart, IsALayoutOfItsOwn) {
   const TriangleSurface surface = unit(repaired(torus(40, 20)));
   Context context;
-  const PatchedSurface s = base_of(surface, 40).cut(kWhole, Progress(context)).patches;
+  const PatchedSurface s = base_of(surface, 40).cut(whole_surface, Progress(context)).patches;
   std::mt19937 random(3);
   for (int tries = 0; tries < 20; ++tries) {
     std::vector<int> patches;
@@ -135,7 +133,7 @@ TEST(PatchedPart, IsALayoutOfItsOwn) {
 TEST(GluePatchMaps, UndoesExtraction) {
   const TriangleSurface surface = unit(repaired(ball(14, 0.5)));
   Context context;
-  PatchedSurface s = base_of(surface, 30).cut(kWhole, Progress(context)).patches;
+  PatchedSurface s = base_of(surface, 30).cut(whole_surface, Progress(context)).patches;
   const auto corners = map_patches(s, Progress(context));
   ChartMesh charts(s, corners);
   smooth_map(charts, s, GlobalMapOptions(), Progress(context));

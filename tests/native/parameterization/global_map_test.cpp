@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <limits>
 #include <memory>
 
 #include "generated_surfaces.h"
@@ -33,7 +32,7 @@ Mapped map_of(const PolygonSoup& soup, double size) {
   Context context;
   BaseDomainOptions options;
   options.size = size;
-  m.patches = BaseDomain(m.surface, options, Progress(context)).cut(std::numeric_limits<double>::infinity(), Progress(context)).patches;
+  m.patches = BaseDomain(m.surface, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
   const auto corners = map_patches(m.patches, Progress(context));
   m.charts = std::make_unique<ChartMesh>(m.patches, corners);
   return m;
