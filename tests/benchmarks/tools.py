@@ -110,6 +110,8 @@ def through_arrays(model, command, target):
         made = np.load(result)
         if not made["changed"]:
             raise Failure(f"left the mesh unchanged: {last_complaint(output)}")
+        if len(made["points"]) == 0:
+            raise Failure("made an empty mesh")
         return Outcome((made["points"], made["offsets"], made["indices"]), float(made["seconds"]), memory)
 
 
