@@ -115,6 +115,7 @@ std::vector<bool> operations_below(const HybridMesh& hierarchy, int level) {
 SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int from, int to, const SubdivisionOptions& options, const Progress& progress) {
   if (from < 0 || to < from || to > HybridMesh::max_level)
     refuse("subdivision from " + level_name(from) + " to " + level_name(to) + "; levels run from 0 to " + std::to_string(HybridMesh::max_level));
+  if (from > hierarchy.depth()) refuse("there is no level N" + std::to_string(from) + " to subdivide");
   if (from == to && options.last == LevelKind::M) refuse("subdivision to the same level gives N" + std::to_string(to) + ", not M" + std::to_string(to));
   SubdividedMesh result{hierarchy, {}, {}};
   HybridMesh& uniform = result.hierarchy;

@@ -124,6 +124,57 @@ TEST(CatmullClark, OperationsStandBetweenTheSteps) {
     }
 }
 
+// Whatever was done to a hierarchy: refined here and there, changed at several levels, with some of the operations switched off.
+TEST(CatmullClark, AnyHierarchyIsSubdividedByTheBook) {
+  int applied = 0, skipped = 0;
+  for (const Base& base : bases())
+    for (unsigned seed = 0; seed < 15; ++seed) {
+      SCOPED_TRACE(base.name + " " + std::to_string(seed));
+      HybridMesh mesh = base.mesh;
+      mesh.refine_uniform(1);
+      std::mt19937 random(seed);
+      for (int step = 0; step < 8; ++step) {
+        const std::vector<int> leaves = mesh.leaves(), candidates = active_nodes(mesh, 1 + static_cast<int>(random() % 3));
+        const auto any = [&] { return candidates[random() % candidates.size()]; };
+        if (step % 2 || candidates.empty()) {
+          const int leaf = leaves[random() % leaves.size()];
+          if (mesh.level(leaf) < 4) mesh.refine_balanced(leaf);
+          continue;
+        }
+        const auto kind = random() % 3;
+        const Repatch repatch = kind == 0 ? cube_on(mesh, any()) : kind == 1 ? opening(mesh, {any()}) : tube_between(mesh, any(), any(), static_cast<int>(random() % 4));
+        applied += mesh.apply(repatch).empty();
+        mesh.balance();
+      }
+      SubdivisionOptions options;
+      options.operation_vertices = OperationVertices::Harmonic;
+      std::vector<bool> wanted(mesh.operation_count());
+      for (std::size_t o = 0; o < wanted.size(); ++o) wanted[o] = random() % 4 > 0;
+      SubdividedMesh step;
+      try {
+        options.operations = wanted;
+        step = subdivided(mesh, randomly_placed(mesh.level_mesh(0), random), 0, 0, options);
+      } catch (const Error&) {  // operations that are no manifold without the others
+        ++skipped;
+        continue;
+      }
+      options.operations.reset();
+      options.rules = random_rules(step.hierarchy, step.mesh, BoundaryRule::EdgesOnly, random);
+      ReferenceSharpness sharpness = reference_sharpness(step.hierarchy, step.mesh, options.rules);
+      for (int j = 1; j <= 4; ++j) {
+        options.last = LevelKind::M;
+        const SubdividedMesh before = subdivided(step.hierarchy, step.mesh, j - 1, j, options);
+        EXPECT_TRUE(same_points(before.mesh, reference_step(before.hierarchy, step.mesh, BoundaryRule::EdgesOnly, sharpness), kSharpnessRounding)) << j;
+        options.last = LevelKind::N;
+        step = subdivided(step.hierarchy, step.mesh, j - 1, j, options);
+        EXPECT_GT(common_vertices(before.mesh, step.mesh, 1e-15), 0);
+        options.rules = step.rules;
+      }
+    }
+  EXPECT_GT(applied, 100);
+  EXPECT_LT(skipped, 10);
+}
+
 TEST(CatmullClark, EverythingMovesWithTheMesh) {
   const Eigen::Matrix3d linear = (Eigen::Matrix3d() << 1.5, 0.3, -0.2, 0.1, -0.8, 0.4, 0.6, 0.2, 1.1).finished();
   const Vec3 shift(3, -4, 5);
