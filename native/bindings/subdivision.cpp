@@ -81,7 +81,8 @@ Enum read_word(const char* name, const std::string& word, const std::vector<std:
 
 VertexId vertex_at(const QuadMesh& level, std::int64_t point, const char* what, std::size_t number) {
   if (point >= 0 && point < static_cast<std::int64_t>(level.vertex.size())) return level.vertex[static_cast<std::size_t>(point)];
-  refuse(std::string(what) + " " + std::to_string(number) + " names point " + std::to_string(point) + ", but the level has " + std::to_string(level.vertex.size()) + " points");
+  refuse(std::string(what) + " " + std::to_string(number) + " names point " + std::to_string(point) + ", but the level has " +
+         std::to_string(level.vertex.size()) + " points");
 }
 
 Answer answer(const HybridMesh& hierarchy, Request request, const Progress& progress) {
@@ -154,10 +155,10 @@ points                positions that take the place of those of level("N<from_le
 void bind_subdivision(py::module_& module) {
   using py::arg;
   const py::object type = module.attr("Hierarchy");
-  type.attr("subdivide") = py::cpp_function(&subdivide_level, py::name("subdivide"), py::is_method(type), arg("from_level"), arg("to_level"),
-                                            arg("operations") = true, py::kw_only(), arg("limit") = false, arg("creases") = CreaseList(),
-                                            arg("corners") = CornerList(), arg("boundary") = "edges", arg("operation_vertices") = "stored",
-                                            arg("points") = py::none(), kDocumentation);
+  type.attr("subdivide") =
+      py::cpp_function(&subdivide_level, py::name("subdivide"), py::is_method(type), arg("from_level"), arg("to_level"), arg("operations") = true,
+                       py::kw_only(), arg("limit") = false, arg("creases") = CreaseList(), arg("corners") = CornerList(), arg("boundary") = "edges",
+                       arg("operation_vertices") = "stored", arg("points") = py::none(), kDocumentation);
 }
 
 }  // namespace hybrid_mesh

@@ -2,6 +2,7 @@
 // Based on: Guskov, Khodakovsky, Schroeder, Sweldens, Hybrid Meshes: Multiresolution using Regular and Irregular Refinement, 2002, section 4.1.
 #include "subdivision/catmull_clark.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -65,7 +66,9 @@ QuadMesh starting_mesh(const HybridMesh& uniform, const HybridMesh& given, const
   const VertexIndex known(level.vertex);
   int lacking = 0;
   for (const std::size_t v : missing) lacking += known(mesh.vertex[v]) >= 0;
-  if (lacking > 0) refuse("the mesh to subdivide lacks " + std::to_string(lacking) + " of the " + std::to_string(mesh.vertex_count()) + " vertices of " + level_name(from));
+  if (lacking > 0)
+    refuse("the mesh to subdivide lacks " + std::to_string(lacking) + " of the " + std::to_string(mesh.vertex_count()) + " vertices of " +
+           level_name(from));
   place_vertices(MeshTopology(uniform, mesh), OperationVertices::Stored, placed, own_level_mesh(uniform, from).points, mesh);
   return mesh;
 }
@@ -112,11 +115,13 @@ std::vector<bool> operations_below(const HybridMesh& hierarchy, int level) {
   return result;
 }
 
-SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int from, int to, const SubdivisionOptions& options, const Progress& progress) {
+SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int from, int to, const SubdivisionOptions& options,
+                         const Progress& progress) {
   if (from < 0 || to < from || to > HybridMesh::max_level)
     refuse("subdivision from " + level_name(from) + " to " + level_name(to) + "; levels run from 0 to " + std::to_string(HybridMesh::max_level));
   if (from > hierarchy.depth()) refuse("there is no level N" + std::to_string(from) + " to subdivide");
-  if (from == to && options.last == LevelKind::M) refuse("subdivision to the same level gives N" + std::to_string(to) + ", not M" + std::to_string(to));
+  if (from == to && options.last == LevelKind::M)
+    refuse("subdivision to the same level gives N" + std::to_string(to) + ", not M" + std::to_string(to));
   SubdividedMesh result{hierarchy, {}, {}};
   HybridMesh& uniform = result.hierarchy;
   if (options.operations) choose_operations(uniform, *options.operations);
@@ -129,7 +134,8 @@ SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int
     progress(std::ldexp(1.0, 2 * (level - 1 - to)));
     const Sharpness sharpness = refined_sharpness(uniform, mesh, topology);
     mesh = regular_step(uniform, mesh, topology, level);
-    if (has_operations(uniform, level) && (level < to || options.last == LevelKind::N)) mesh = irregular_step(uniform, mesh, level, options.operation_vertices);
+    if (has_operations(uniform, level) && (level < to || options.last == LevelKind::N))
+      mesh = irregular_step(uniform, mesh, level, options.operation_vertices);
     topology = MeshTopology(uniform, mesh);
     topology.quads.boundary = options.rules.boundary;
     apply_sharpness(sharpness, mesh, topology);

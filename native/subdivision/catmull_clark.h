@@ -20,8 +20,8 @@ enum class BoundaryRule {
   EdgesAndCorners  // vertices of one quad stay where they are
 };
 
-// Sharpness falls by one a level, a fraction of one fades the crease out; 10 and more is infinite. An edge's parts inherit its sharpness. A crease whose
-// edge is removed by an operation ends there.
+// Sharpness falls by one a level, a fraction of one fades the crease out; 10 and more is infinite. An edge's parts inherit its sharpness. A crease
+// whose edge is removed by an operation ends there.
 struct Crease {
   VertexId a, b;  // ends of an edge (of all edges between them, if there are several)
   double sharpness = 10;
@@ -59,12 +59,13 @@ struct SubdividedMesh {
   CatmullClarkRules rules;  // what is left of the sharpness on mesh's level
 };
 
-// Positions on a level from those of N^from in `start`, whose vertices are found by their names. Vertices of N^from that the hierarchy's own level does
-// not have, because it is adaptive or has other operations enabled, are filled in from the hierarchy or else harmonically. from <= depth; from <= to <= max_level.
-// Throws Error{InvalidInput} if levels are out of range; if `start` lacks a vertex or has a position that is not finite; if a crease is no edge of
-// N^from, a sharp vertex is not in it, or a sharpness is negative or no number; if there is no position for an operation's vertices, or the chosen
-// operations make no manifold. Throws Error{Unsupported} if there would be more than max_subdivided_quads.
-SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int from, int to, const SubdivisionOptions& options, const Progress& progress);
+// Positions on a level from those of N^from in `start`, whose vertices are found by their names. Vertices of N^from that the hierarchy's own level
+// does not have, because it is adaptive or has other operations enabled, are filled in from the hierarchy or else harmonically. from <= depth; from
+// <= to <= max_level. Throws Error{InvalidInput} if levels are out of range; if `start` lacks a vertex or has a position that is not finite; if a
+// crease is no edge of N^from, a sharp vertex is not in it, or a sharpness is negative or no number; if there is no position for an operation's
+// vertices, or the chosen operations make no manifold. Throws Error{Unsupported} if there would be more than max_subdivided_quads.
+SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int from, int to, const SubdivisionOptions& options,
+                         const Progress& progress);
 
 inline constexpr std::int64_t max_subdivided_quads = std::int64_t{1} << 23;
 

@@ -12,7 +12,8 @@ namespace hybrid_mesh {
 
 namespace {
 
-// Fans side by side as one mesh. Of each, the vertex comes first, then the ends of the spokes, then the opposite corners; the spokes are its first edges.
+// Fans side by side as one mesh. Of each, the vertex comes first, then the ends of the spokes, then the opposite corners; the spokes are its first
+// edges.
 class FanMesh {
  public:
   FanMesh(const std::vector<const Fan*>& fans, BoundaryRule boundary) {
@@ -136,8 +137,8 @@ std::vector<VertexLimit> limits_of(const std::vector<Fan>& fans, BoundaryRule bo
   return result;
 }
 
-// The weights of the limit position and of the tangents are left eigenvectors of the subdivision matrix: that of 1, and the largest of those that the mirror
-// at spoke 0 keeps and of those that it turns over. They come out of powers of the matrix.
+// The weights of the limit position and of the tangents are left eigenvectors of the subdivision matrix: that of 1, and the largest of those that the
+// mirror at spoke 0 keeps and of those that it turns over. They come out of powers of the matrix.
 VertexLimit limit_by_matrix(const Fan& fan) {
   constexpr int kSteps = 400;  // the ratio of one eigenvalue to the next is below 0.9 for up to ten faces
   const int n = fan.face_count, size = 2 * n + 1;

@@ -11,7 +11,7 @@ namespace hybrid_mesh {
 // A vertex with the quads around it, taken out of a mesh and unfolded. Where the vertex goes under subdivision depends on nothing else.
 struct Fan {
   int face_count = 0;
-  bool open = false;                  // at a boundary
+  bool open = false;  // at a boundary
   float vertex_sharpness = 0;
   std::vector<float> edge_sharpness;  // #spokes, counter-clockwise; face i lies between spokes i and i + 1
   Vec3 centre = Vec3::Zero();

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "subdivision/fan.h"
@@ -44,7 +46,8 @@ Vec3 corner_normal(const Fan& fan) {
   return sum.normalized();
 }
 
-// Where tangents span no plane, up to rounding, the normal of the polygon around the vertex takes their place. `size` is the length of the longest spoke.
+// Where tangents span no plane, up to rounding, the normal of the polygon around the vertex takes their place. `size` is the length of the longest
+// spoke.
 template <class MakeFan>
 Vec3 tangent_normal(const VertexLimit& limit, double size, const MakeFan& fan) {
   const Vec3 normal = limit.tangent.cross(limit.cross_tangent);
@@ -67,11 +70,13 @@ class LimitEvaluation {
     result_.normals.resize(result_.points.size());
     for (int v = 0; v < topology_.vertex_count; ++v) {
       if (!fans_.is_open(v) && fans_.face_count(v) == 1)
-        throw Error(ErrorCode::Unsupported, "an interior vertex of valence 1, where subdivision has no limit");
+        throw Error(ErrorCode::Unsupported,
+                    "vertex " + std::to_string(v) + " of the mesh is an interior vertex of valence 1, where subdivision has no limit");
       if (is_special(v))
         special_.push_back(v);
       else
-        result_.normals[v] = tangent_normal({result_.points[v], limit.tangents[v], limit.cross_tangents[v]}, longest_spoke(v), [&] { return fan(v); });
+        result_.normals[v] =
+            tangent_normal({result_.points[v], limit.tangents[v], limit.cross_tangents[v]}, longest_spoke(v), [&] { return fan(v); });
     }
     if (!special_.empty()) evaluate_special();
     return std::move(result_);
@@ -119,7 +124,8 @@ class LimitEvaluation {
 
   void evaluate(int v, const Fan& fan, const VertexLimit& limit) {
     const std::vector<int> sharp = sharp_spokes(fan);
-    const bool stays = fan.vertex_sharpness > 0 || sharp.size() > 2 || (fan.open && fan.face_count == 1 && topology_.boundary == BoundaryRule::EdgesAndCorners);
+    const bool stays =
+        fan.vertex_sharpness > 0 || sharp.size() > 2 || (fan.open && fan.face_count == 1 && topology_.boundary == BoundaryRule::EdgesAndCorners);
     result_.points[v] = limit.point;
     if (stays) {
       result_.normals[v] = corner_normal(fan);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Based on: Catmull, Clark, Recursively generated B-spline surfaces on arbitrary topological meshes, 1978; DeRose, Kass, Truong, Subdivision surfaces in
-// character animation, 1998 (semi-sharp creases); Biermann, Levin, Zorin, Piecewise smooth subdivision surfaces with normal control, 2000 (tangents at
-// creases), all as OpenSubdiv has them.
+// Based on: Catmull, Clark, Recursively generated B-spline surfaces on arbitrary topological meshes, 1978; DeRose, Kass, Truong, Subdivision surfaces
+// in character animation, 1998 (semi-sharp creases); Biermann, Levin, Zorin, Piecewise smooth subdivision surfaces with normal control, 2000
+// (tangents at creases), all as OpenSubdiv has them.
 #include "subdivision/masks.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
@@ -117,7 +117,7 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const QuadTopology& topology,
   using Factory = Far::TopologyRefinerFactory<FannedTopology>;
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(topology.boundary == BoundaryRule::EdgesOnly ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
-                                                                                  : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+                                                                                   : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
   std::unique_ptr<Far::TopologyRefiner> refiner(Factory::Create({topology, fans}, Factory::Options(Sdc::SCHEME_CATMARK, options)));
   if (!refiner) throw Error(ErrorCode::Unsupported, "a mesh that OpenSubdiv does not take: a vertex has too many quads");
   return refiner;

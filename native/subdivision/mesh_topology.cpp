@@ -69,7 +69,8 @@ void apply_rules(const CatmullClarkRules& rules, const QuadMesh& mesh, MeshTopol
   if (!rules.creases.empty()) {
     // Edges by their lower end.
     std::vector<std::array<int, 3>> by_ends;
-    for (int e = 0; e < quads.edge_count(); ++e) by_ends.push_back({std::min(quads.ends[e][0], quads.ends[e][1]), std::max(quads.ends[e][0], quads.ends[e][1]), e});
+    for (int e = 0; e < quads.edge_count(); ++e)
+      by_ends.push_back({std::min(quads.ends[e][0], quads.ends[e][1]), std::max(quads.ends[e][0], quads.ends[e][1]), e});
     std::sort(by_ends.begin(), by_ends.end());
     for (std::size_t i = 0; i < rules.creases.size(); ++i) {
       const Crease& crease = rules.creases[i];

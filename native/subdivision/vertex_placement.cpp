@@ -88,7 +88,8 @@ int extend_harmonically(const QuadTopology& topology, const std::vector<Known>& 
   return unknown - static_cast<int>(size);
 }
 
-void place_vertices(const MeshTopology& topology, OperationVertices where, const std::vector<char>& placed, const std::vector<Vec3>& own, QuadMesh& mesh) {
+void place_vertices(const MeshTopology& topology, OperationVertices where, const std::vector<char>& placed, const std::vector<Vec3>& own,
+                    QuadMesh& mesh) {
   const std::size_t count = mesh.vertex_count();
   std::vector<Known> known(count, Known::Yes);
   for (std::size_t v = 0; v < count; ++v)
@@ -111,7 +112,8 @@ void place_vertices(const MeshTopology& topology, OperationVertices where, const
   }
   const int without = extend_harmonically(topology.quads, known, mesh.points);
   if (without > 0)
-    throw Error(ErrorCode::InvalidInput, std::to_string(without) + " vertices of an operation have no position on its level and no neighbours with one");
+    throw Error(ErrorCode::InvalidInput,
+                std::to_string(without) + " vertices of an operation have no position on its level and no neighbours with one");
 }
 
 }  // namespace hybrid_mesh

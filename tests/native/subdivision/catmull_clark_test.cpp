@@ -28,7 +28,8 @@ testing::AssertionResult same_points(const QuadMesh& mesh, const PointMap& expec
 testing::AssertionResult same_mesh(const QuadMesh& a, const QuadMesh& b, double tolerance = kRounding) {
   if (a.indices != b.indices || a.vertex != b.vertex || a.node != b.node) return testing::AssertionFailure() << "different connectivity";
   for (std::size_t v = 0; v < a.vertex_count(); ++v)
-    if (!((a.points[v] - b.points[v]).norm() < tolerance)) return testing::AssertionFailure() << "vertex " << v << " is off by " << (a.points[v] - b.points[v]).norm();
+    if (!((a.points[v] - b.points[v]).norm() < tolerance))
+      return testing::AssertionFailure() << "vertex " << v << " is off by " << (a.points[v] - b.points[v]).norm();
   return testing::AssertionSuccess();
 }
 
@@ -142,7 +143,9 @@ TEST(CatmullClark, AnyHierarchyIsSubdividedByTheBook) {
           continue;
         }
         const auto kind = random() % 3;
-        const Repatch repatch = kind == 0 ? cube_on(mesh, any()) : kind == 1 ? opening(mesh, {any()}) : tube_between(mesh, any(), any(), static_cast<int>(random() % 4));
+        const Repatch repatch = kind == 0   ? cube_on(mesh, any())
+                                : kind == 1 ? opening(mesh, {any()})
+                                            : tube_between(mesh, any(), any(), static_cast<int>(random() % 4));
         applied += mesh.apply(repatch).empty();
         mesh.balance();
       }
@@ -164,7 +167,8 @@ TEST(CatmullClark, AnyHierarchyIsSubdividedByTheBook) {
       for (int j = 1; j <= 4; ++j) {
         options.last = LevelKind::M;
         const SubdividedMesh before = subdivided(step.hierarchy, step.mesh, j - 1, j, options);
-        EXPECT_TRUE(same_points(before.mesh, reference_step(before.hierarchy, step.mesh, BoundaryRule::EdgesOnly, sharpness), kSharpnessRounding)) << j;
+        EXPECT_TRUE(same_points(before.mesh, reference_step(before.hierarchy, step.mesh, BoundaryRule::EdgesOnly, sharpness), kSharpnessRounding))
+            << j;
         options.last = LevelKind::N;
         step = subdivided(step.hierarchy, step.mesh, j - 1, j, options);
         EXPECT_GT(common_vertices(before.mesh, step.mesh, 1e-15), 0);
@@ -228,6 +232,17 @@ TEST(CatmullClark, SkippedOperationsLeaveTheRegularResult) {
   HybridMesh disabled = mesh;
   ASSERT_EQ(disabled.set_enabled(*options.operations), "");
   EXPECT_TRUE(same_mesh(subdivided(disabled, start, 0, 3).mesh, first.mesh));
+
+  // From a level after the skipped operations, what they removed is filled in; after ones that were disabled, what they make.
+  for (const HybridMesh& given : {mesh, disabled})
+    for (const std::vector<bool>& chosen : {operations_below(mesh, 1), mesh.enabled()}) {
+      QuadMesh level = randomly_placed(given.level_mesh(2), random);
+      for (Vec3& point : level.points) point.x() = -3;
+      options.operations = chosen;
+      const SubdividedMesh result = subdivided(given, level, 2, 2, options);
+      EXPECT_GT(common_vertices(level, result.mesh, kRounding), 100);
+      for (const Vec3& point : result.mesh.points) EXPECT_NEAR(point.x(), -3, kRounding);
+    }
 }
 
 TEST(CatmullClark, AdaptiveHierarchiesAreContinuedUniformly) {
@@ -240,7 +255,8 @@ TEST(CatmullClark, AdaptiveHierarchiesAreContinuedUniformly) {
   const QuadMesh start = randomly_placed(uniform.level_mesh(0), random);
   const SubdividedMesh a = subdivided(uniform, start, 0, 5), b = subdivided(adaptive, start, 0, 5);
   ASSERT_EQ(a.mesh.indices, b.mesh.indices);
-  EXPECT_TRUE(std::equal(a.mesh.points.begin(), a.mesh.points.end(), b.mesh.points.begin(), [](const Vec3& p, const Vec3& q) { return (p - q).norm() < kRounding; }));
+  EXPECT_TRUE(std::equal(a.mesh.points.begin(), a.mesh.points.end(), b.mesh.points.begin(),
+                         [](const Vec3& p, const Vec3& q) { return (p - q).norm() < kRounding; }));
   EXPECT_TRUE(find_defects(b.hierarchy).empty());
   // What both have is named the same.
   EXPECT_GT(common_vertices(subdivided(uniform, start, 0, 3).mesh, subdivided(adaptive, start, 0, 3).mesh, kRounding), 100);
@@ -296,7 +312,8 @@ TEST(CatmullClark, OperationVerticesAreWhereTheyAreAskedFor) {
   // Kept for the level, one of them at the origin, which is as good a position as any.
   const auto check = [&](const QuadMesh& own) {
     const Vec3 shift(4, 5, 6);
-    const QuadMesh stored = run(OperationVertices::Stored, shift), carried = run(OperationVertices::Carried), moved = run(OperationVertices::Carried, shift);
+    const QuadMesh stored = run(OperationVertices::Stored, shift), carried = run(OperationVertices::Carried),
+                   moved = run(OperationVertices::Carried, shift);
     for (std::size_t v = 0; v < own.vertex_count(); ++v) {
       if (made_here(own, v)) {
         EXPECT_LT((stored.points[v] - own.points[v]).norm(), kRounding);
@@ -351,7 +368,8 @@ TEST(CatmullClark, ACreaseEndsWhereItsEdgeIsRemoved) {
   Repatch repatch;
   repatch.level = 1;
   repatch.removed = {left, right};
-  for (const auto& [node, corner] : {std::pair(left, 0), {left, 1}, {right, 1}, {right, 2}, {right, 3}, {left, 3}}) repatch.boundary.push_back(mesh.corner(node, corner));
+  for (const auto& [node, corner] : {std::pair(left, 0), {left, 1}, {right, 1}, {right, 2}, {right, 3}, {left, 3}})
+    repatch.boundary.push_back(mesh.corner(node, corner));
   repatch.new_vertices = 2;
   repatch.quads = {{0, 1, -1, 5}, {1, 2, -2, -1}, {2, 3, 4, -2}, {-1, -2, 4, 5}};
   ASSERT_EQ(mesh.apply(repatch), "");
@@ -413,7 +431,8 @@ TEST(CatmullClark, BadInputIsRefused) {
   EXPECT_EQ(with_rules({{}, {{a, b, 1}}, {{a, 0.5}}}), "no error");
   EXPECT_EQ(with_rules({{}, {{b, a, std::numeric_limits<double>::infinity()}}, {}}), "no error");
   EXPECT_TRUE(says(with_rules({{}, {{a, b, 1}, {a, opposite, 1}}, {}}), "crease 1"));
-  for (const VertexId wrong : {a, finer, VertexId(), nonsense, VertexId(VertexId::Kind::Edge, 1 << 28)}) EXPECT_TRUE(says(with_rules({{}, {{a, wrong, 1}}, {}}), "no edge"));
+  for (const VertexId wrong : {a, finer, VertexId(), nonsense, VertexId(VertexId::Kind::Edge, 1 << 28)})
+    EXPECT_TRUE(says(with_rules({{}, {{a, wrong, 1}}, {}}), "no edge"));
   EXPECT_TRUE(says(with_rules({{}, {{VertexId(), VertexId(), 1}}, {}}), "no edge"));
   EXPECT_TRUE(says(with_rules({{}, {}, {{finer, 1}}}), "no vertex"));
   for (const double wrong : {-0.5, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {

@@ -83,7 +83,8 @@ TEST(LimitSurface, RegularVerticesAreThoseOfBicubicSplines) {
   std::mt19937 random(1);
   QuadMesh level = randomly_placed(mesh.level_mesh(0), random);
   std::array<std::array<Vec3, kColumns + 1>, kRows + 1> p;
-  for (std::size_t v = 0; v < level.vertex_count(); ++v) p[level.vertex[v].index() / (kColumns + 1)][level.vertex[v].index() % (kColumns + 1)] = level.points[v];
+  for (std::size_t v = 0; v < level.vertex_count(); ++v)
+    p[level.vertex[v].index() / (kColumns + 1)][level.vertex[v].index() % (kColumns + 1)] = level.points[v];
   const auto mean = [](const Vec3& a, const Vec3& b, const Vec3& c) { return Vec3((a + 4 * b + c) / 6); };
   for (const BoundaryRule boundary : {BoundaryRule::EdgesOnly, BoundaryRule::EdgesAndCorners}) {
     CatmullClarkRules rules;
@@ -170,8 +171,12 @@ TEST(LimitSurface, NormalsStandOnTheSurface) {
     HybridMesh base;
     std::vector<Vec3> places;
   };
-  for (const auto& [base, places] : {Case{cube(), kCubeCorners}, {torus(4, 4), torus_places(4, 4)}, {double_cone(3), double_cone_places(3)},
-                                     {double_cone(5), double_cone_places(5)}, {double_cone(6), double_cone_places(6)}, {grid(4, 3), grid_places(4, 3)}}) {
+  for (const auto& [base, places] : {Case{cube(), kCubeCorners},
+                                     {torus(4, 4), torus_places(4, 4)},
+                                     {double_cone(3), double_cone_places(3)},
+                                     {double_cone(5), double_cone_places(5)},
+                                     {double_cone(6), double_cone_places(6)},
+                                     {grid(4, 3), grid_places(4, 3)}}) {
     const HybridMesh mesh = uniform(base, 6);
     std::mt19937 random(3);
     const QuadMesh start = shaken(mesh, places, 0.2, random);
@@ -249,7 +254,8 @@ TEST(LimitSurface, SharpCreasesAreSplineCurves) {
   NamedLimit limit = named_limit(level);
   for (int x = 0; x < 5; ++x) {
     const int node = mesh.first_child(x), last = mesh.first_child(x) + 1;
-    const VertexId quarters[5] = {mesh.corner(x, 0), mesh.corner(mesh.first_child(node), 1), mesh.corner(node, 1), mesh.corner(mesh.first_child(last), 1), mesh.corner(x, 1)};
+    const VertexId quarters[5] = {mesh.corner(x, 0), mesh.corner(mesh.first_child(node), 1), mesh.corner(node, 1),
+                                  mesh.corner(mesh.first_child(last), 1), mesh.corner(x, 1)};
     for (int k = 0; k <= 4; ++k) EXPECT_LT((limit.points[quarters[k]] - spline(x, k / 4.0)).norm(), 1e-13);
   }
 }

@@ -148,7 +148,8 @@ inline ReferenceSharpness reference_sharpness(const HybridMesh& hierarchy, const
     for (const int node : mesh.node)
       for (int i = 0; i < 4; ++i) {
         const VertexId from = hierarchy.corner(node, i), to = hierarchy.corner(node, (i + 1) % 4);
-        if ((from == crease.a && to == crease.b) || (from == crease.b && to == crease.a)) result.edges[hierarchy.half_edge(node, i) >> 1] = crease.sharpness;
+        if ((from == crease.a && to == crease.b) || (from == crease.b && to == crease.a))
+          result.edges[hierarchy.half_edge(node, i) >> 1] = crease.sharpness;
       }
   for (const SharpVertex& vertex : rules.vertices) result.vertices[vertex.vertex] = vertex.sharpness;
   return result;
