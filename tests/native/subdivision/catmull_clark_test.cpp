@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <numbers>
 
 #include "base/error.h"
 #include "subdivision/reference.h"

@@ -2,6 +2,8 @@
 // Catmull-Clark subdivision by the book, and hierarchies to try it on.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <map>
 #include <random>
