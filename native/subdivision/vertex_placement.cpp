@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "subdivision/vertex_placement.h"
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+
+namespace hybrid_mesh {
+
+namespace {
+
+// A map of which every sample is unknown.
+PatchMap unknown_map() {
+  PatchMap map;
+  map.uv = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
+  map.positions.assign(4, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  map.triangles = {{0, 1, 2}, {0, 2, 3}};
+  map.source_face = {0, 0};
+  map.source = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  return map;
+}
+
+}  // namespace
+
+QuadMesh own_level_mesh(const HybridMesh& hierarchy, int level) {
+  QuadMesh mesh = hierarchy.level_mesh(level);
+  std::vector<int> unmapped;  // roots
+  for (const MapLocation& location : mesh.location)
+    if (hierarchy.map_owner(location.node) < 0) unmapped.push_back(location.node);
+  if (unmapped.empty()) return mesh;
+  std::sort(unmapped.begin(), unmapped.end());
+  unmapped.erase(std::unique(unmapped.begin(), unmapped.end()), unmapped.end());
+  HybridMesh marked = hierarchy;
+  const PatchMap unknown = unknown_map();
+  for (const int root : unmapped) marked.set_map(root, unknown);
+  return marked.level_mesh(level);
+}
+
+int extend_harmonically(const QuadTopology& topology, const std::vector<Known>& known, std::vector<Vec3>& values) {
+  // Values that a known one reaches.
+  std::vector<int> row(values.size(), -1), queue;
+  std::vector<std::vector<int>> neighbours(values.size());  // of unknown vertices
+  for (const auto& [a, b] : topology.ends) {
+    if (a == b || known[a] == Known::Absent || known[b] == Known::Absent) continue;
+    if (known[a] == Known::No) neighbours[a].push_back(b);
+    if (known[b] == Known::No) neighbours[b].push_back(a);
+  }
+  const auto reach = [&](int v) {
+    if (row[v] >= 0) return;
+    row[v] = static_cast<int>(queue.size());
+    queue.push_back(v);
+  };
+  int unknown = 0;
+  for (int v = 0; v < topology.vertex_count; ++v) {
+    if (known[v] != Known::No) continue;
+    ++unknown;
+    for (const int w : neighbours[v])
+      if (known[w] == Known::Yes) reach(v);
+  }
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    for (const int w : neighbours[queue[i]])
+      if (known[w] == Known::No) reach(w);
+  if (queue.empty()) return unknown;
+
+  const auto size = static_cast<Eigen::Index>(queue.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(size, 3);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const std::vector<int>& around = neighbours[queue[i]];
+    entries.emplace_back(i, i, static_cast<double>(around.size()));
+    for (const int w : around) {
+      if (known[w] == Known::Yes)
+        right.row(i) += values[w].transpose();
+      else
+        entries.emplace_back(i, row[w], -1.0);
+    }
+  }
+  Eigen::SparseMatrix<double> laplacian(size, size);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
+  if (solver.info() != Eigen::Success) throw Error(ErrorCode::Internal, "the harmonic extension has no solution");
+  const Eigen::MatrixX3d solution = solver.solve(right);
+  for (Eigen::Index i = 0; i < size; ++i) values[queue[i]] = solution.row(i).transpose();
+  return unknown - static_cast<int>(size);
+}
+
+void place_vertices(const MeshTopology& topology, OperationVertices where, const std::vector<char>& placed, const std::vector<Vec3>& own,
+                    QuadMesh& mesh) {
+  const std::size_t count = mesh.vertex_count();
+  std::vector<Known> known(count, Known::Yes);
+  for (std::size_t v = 0; v < count; ++v)
+    if (!placed[v]) known[v] = where == OperationVertices::Harmonic || !own[v].allFinite() ? Known::No : Known::Yes;
+  if (where == OperationVertices::Carried) {
+    // How far the vertices lie from their own positions, as far as these are known.
+    std::vector<Known> moved(count, Known::Absent);
+    std::vector<Vec3> way(count, Vec3::Zero());
+    for (std::size_t v = 0; v < count; ++v) {
+      if (!own[v].allFinite()) continue;
+      moved[v] = placed[v] ? Known::Yes : Known::No;
+      if (placed[v]) way[v] = mesh.points[v] - own[v];
+    }
+    extend_harmonically(topology.quads, moved, way);
+    for (std::size_t v = 0; v < count; ++v)
+      if (moved[v] == Known::No) mesh.points[v] = own[v] + way[v];
+  } else {
+    for (std::size_t v = 0; v < count; ++v)
+      if (!placed[v] && known[v] == Known::Yes) mesh.points[v] = own[v];
+  }
+  const int without = extend_harmonically(topology.quads, known, mesh.points);
+  if (without > 0)
+    throw Error(ErrorCode::InvalidInput,
+                std::to_string(without) + " vertices of an operation have no position on its level and no neighbours with one");
+}
+
+}  // namespace hybrid_mesh
