@@ -9,7 +9,8 @@
 
 #include "surface/polygon_soup.h"
 
-namespace hybrid_mesh {
+// A namespace of its own: a test executable has other functions of the same names, that make quad hierarchies (hierarchy/bases.h).
+namespace hybrid_mesh::shapes {
 
 inline PolygonSoup soup_of(const std::vector<Vec3>& points, const std::vector<std::vector<int>>& polygons) {
   PolygonSoup soup;
@@ -112,4 +113,8 @@ inline PolygonSoup random_soup(std::uint64_t seed, int points, int faces) {
   return soup;
 }
 
+}  // namespace hybrid_mesh::shapes
+
+namespace hybrid_mesh {
+using namespace shapes;
 }  // namespace hybrid_mesh
