@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/irregular_operations.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "hierarchy/bases.h"
+
+namespace hybrid_mesh {
+namespace {
+
+testing::AssertionResult sound(const HybridMesh& mesh) {
+  const auto defects = find_defects(mesh);
+  if (!defects.empty()) return testing::AssertionFailure() << defects.size() << " defects, first: " << defects[0];
+  return testing::AssertionSuccess();
+}
+
+std::vector<int> active_of_level(const HybridMesh& mesh, int level) {
+  std::vector<int> result;
+  for (int n = 0; n < mesh.node_count(); ++n)
+    if (mesh.is_active(n) && mesh.level(n) == level && !mesh.is_root(n)) result.push_back(n);
+  return result;
+}
+
+// --- single operations ---------------------------------------------------------------------------------------------------------------------------
+
+// A block of quads of a level of a refined grid of one quad: columns [x0, x1), rows [y0, y1).
+std::vector<int> block(const HybridMesh& mesh, int level, int x0, int y0, int x1, int y1) {
+  std::vector<int> result;
+  for (int n : active_of_level(mesh, level)) {
+    const HybridMesh::Square square = mesh.square_in(n, mesh.root(n));
+    const double x = square.u / square.width, y = square.v / square.width;
+    if (mesh.root(n) == 0 && x >= x0 && x < x1 && y >= y0 && y < y1) result.push_back(n);
+  }
+  return result;
+}
+
+HybridMesh square_grid(int level) {
+  HybridMesh mesh = grid(1, 1);
+  mesh.refine_uniform(level);
+  return mesh;
+}
+
+// Quads around every vertex of a level, and whether it lies on the boundary.
+std::map<VertexId, std::pair<int, bool>> valences(const HybridMesh& mesh, int level) {
+  std::map<VertexId, std::pair<int, bool>> result;
+  for (int n = 0; n < mesh.node_count(); ++n)
+    for (int s = 0; s < 4 && mesh.is_active(n) && mesh.level(n) == level; ++s) {
+      result[mesh.corner(n, s)].first += 1;
+      if (!mesh.neighbour(n, s).valid()) result[mesh.corner(n, s)].second = result[mesh.corner(n, (s + 1) % 4)].second = true;
+    }
+  return result;
+}
+
+TEST(IrregularOperations, RegionsAreDisks) {
+  const HybridMesh mesh = square_grid(3);
+  const DiskRegion region = find_disk_region(mesh, block(mesh, 3, 2, 2, 4, 5));
+  EXPECT_EQ(region.reason, "");
+  EXPECT_EQ(region.boundary.size(), 10u);
+  EXPECT_EQ(region.inner.size(), 2u);
+  const std::set<VertexId> corners(region.corners.begin(), region.corners.end());
+  EXPECT_EQ(corners.size(), 10u);
+  for (std::size_t k = 0; k < 10; ++k) EXPECT_EQ(mesh.to(region.boundary[k]), region.corners[(k + 1) % 10]);
+  std::vector<int> wished = regular_quads(region);
+  EXPECT_EQ(std::count(wished.begin(), wished.end(), 1), 4);
+  EXPECT_EQ(std::count(wished.begin(), wished.end(), 2), 6);
+  // The boundary begins where it is told to.
+  EXPECT_EQ(find_disk_region(mesh, region.nodes, region.boundary[3]).corners[0], region.corners[3]);
+  EXPECT_NE(find_disk_region(mesh, region.nodes, region.boundary[3] ^ 1).reason, "");
+
+  const auto reason = [&](std::vector<int> nodes) { return find_disk_region(mesh, nodes).reason; };
+  std::vector<int> two = block(mesh, 3, 0, 0, 1, 1), ring = block(mesh, 3, 1, 1, 4, 4);
+  const std::vector<int> middle = block(mesh, 3, 2, 2, 3, 3), far = block(mesh, 3, 5, 5, 6, 6), diagonal = block(mesh, 3, 1, 1, 2, 2);
+  ring.erase(std::find(ring.begin(), ring.end(), middle[0]));
+  EXPECT_NE(reason({}), "");
+  EXPECT_NE(reason(ring), "");
+  EXPECT_NE(reason({two[0], far[0]}), "");
+  EXPECT_NE(reason({two[0], diagonal[0]}), "");
+  EXPECT_NE(reason({two[0], two[0]}), "");
+  EXPECT_NE(reason({two[0], mesh.parent(two[0])}), "");
+  EXPECT_NE(reason({0}), "");
+  EXPECT_NE(reason({-1}), "");
+  EXPECT_NE(reason({mesh.node_count()}), "");
+}
+
+TEST(IrregularOperations, TowersGrowOnAnyDisk) {
+  struct Case {
+    int x1, y1, count;
+  };
+  for (const Case& c : {Case{3, 3, 1}, Case{3, 3, 5}, Case{4, 3, 1}, Case{5, 4, 3}, Case{6, 6, 2}}) {
+    HybridMesh mesh = square_grid(3);
+    const std::vector<int> nodes = block(mesh, 3, 2, 2, c.x1, c.y1);
+    const int sides = static_cast<int>(find_disk_region(mesh, nodes).boundary.size());
+    const OperationDraft draft = add_cubes(mesh, nodes, c.count);
+    ASSERT_EQ(draft.reason, "");
+    ASSERT_EQ(mesh.apply(draft.repatch), "");
+    EXPECT_EQ(mesh.operation(0).roots.size(), nodes.size() + static_cast<std::size_t>(c.count * sides));
+    mesh.balance();
+    EXPECT_TRUE(sound(mesh));
+    EXPECT_EQ(mesh.leaf_counts().euler, 1);
+    const SoupTopology topology = soup_topology(mesh.level_mesh(3));
+    EXPECT_TRUE(topology.manifold);
+    EXPECT_EQ(topology.boundary_edges, 32);
+    // Only the corners of the region and of its copy are irregular.
+    int irregular = 0;
+    for (const auto& [vertex, at] : valences(mesh, 3)) irregular += at.first != (at.second ? 2 : 4);
+    EXPECT_EQ(irregular, 4 + 4 + 4);  // those of the square itself among them
+  }
+}
+
+TEST(IrregularOperations, TubesJoinBoundariesOfAnySizes) {
+  struct Case {
+    int width_a, height_a, width_b, height_b;
+  };
+  for (const Case& c : {Case{1, 1, 1, 1}, Case{1, 1, 2, 1}, Case{2, 1, 1, 1}, Case{3, 2, 3, 2}, Case{1, 1, 5, 5}, Case{5, 4, 1, 1}, Case{6, 1, 2, 2}, Case{14, 5, 1, 1}})
+    for (int turn : {0, 1, -1, 3, 100}) {
+      SCOPED_TRACE(testing::Message() << c.width_a << "x" << c.height_a << " and " << c.width_b << "x" << c.height_b << ", turn " << turn);
+      HybridMesh mesh = square_grid(4);
+      const OperationDraft draft =
+          connect(mesh, block(mesh, 4, 1, 1, 1 + c.width_a, 1 + c.height_a), block(mesh, 4, 1, 8, 1 + c.width_b, 8 + c.height_b), turn);
+      ASSERT_EQ(draft.reason, "");
+      ASSERT_EQ(mesh.apply(draft.repatch), "");
+      EXPECT_TRUE(sound(mesh));
+      EXPECT_EQ(mesh.leaf_counts().euler, -1);
+      for (const auto& [vertex, at] : valences(mesh, 4)) {
+        if (at.second) continue;
+        EXPECT_GE(at.first, 3);
+        EXPECT_LE(at.first, 6);
+      }
+    }
+  // Equal boundaries: side 0 of one faces the side asked for.
+  HybridMesh mesh = square_grid(3);
+  const std::vector<int> a = block(mesh, 3, 1, 1, 2, 2), b = block(mesh, 3, 5, 5, 6, 6);
+  for (int turn = 0; turn < 4; ++turn) {
+    HybridMesh joined = mesh;
+    ASSERT_EQ(joined.apply(connect(mesh, a, b, turn).repatch), "");
+    const SideLink link = joined.removed_neighbour(a[0], 0);
+    EXPECT_EQ(joined.half_edge(link.node, (link.side + 2) % 4), find_disk_region(mesh, b).boundary[turn]);
+  }
+}
+
+TEST(IrregularOperations, RegionsNextToEachOtherAreJoinedByTwoRings) {
+  HybridMesh mesh = square_grid(3);
+  // One quad between them: straight tubes of some turns would double its edges.
+  for (int turn = 0; turn < 4; ++turn) {
+    HybridMesh joined = mesh;
+    const OperationDraft draft = connect(mesh, block(mesh, 3, 2, 2, 3, 3), block(mesh, 3, 4, 2, 5, 3), turn);
+    ASSERT_EQ(draft.reason, "");
+    ASSERT_EQ(joined.apply(draft.repatch), "");
+    EXPECT_TRUE(sound(joined));
+  }
+  EXPECT_NE(connect(mesh, block(mesh, 3, 2, 2, 3, 3), block(mesh, 3, 3, 2, 4, 3), 0).reason, "");
+  EXPECT_NE(connect(mesh, block(mesh, 3, 2, 2, 3, 3), block(mesh, 3, 2, 2, 3, 3), 0).reason, "");
+}
+
+TEST(IrregularOperations, LayoutsAreGluedOrRefusedInWords) {
+  HybridMesh mesh = square_grid(3);
+  const std::vector<int> nodes = block(mesh, 3, 2, 2, 4, 4);
+  const std::vector<std::array<int, 4>> star = {{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 8}};
+  const auto reason = [&](std::vector<std::array<int, 4>> quads) { return free_layout(mesh, nodes, quads).reason; };
+  EXPECT_NE(reason({}), "");
+  EXPECT_NE(reason({{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}}), "");
+  EXPECT_NE(reason({{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 8}, {0, 1, 2, 9}}), "");
+  EXPECT_NE(reason({{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 9}}), "");
+  EXPECT_NE(reason({{0, 1, 2, -1}}), "");
+  EXPECT_NE(reason({{0, 1, 2, 1000}}), "");
+  EXPECT_NE(reason({{8, 2, 1, 0}, {8, 4, 3, 2}, {8, 6, 5, 4}, {8, 0, 7, 6}}), "");  // turned over
+  for (HalfEdge start : find_disk_region(mesh, nodes).boundary) {
+    HybridMesh changed = mesh;
+    const OperationDraft draft = free_layout(mesh, nodes, star, start);
+    ASSERT_EQ(draft.reason, "");
+    ASSERT_EQ(changed.apply(draft.repatch), "");
+    EXPECT_TRUE(sound(changed));
+    EXPECT_EQ(changed.half_edge(changed.operation(0).roots[0], 0), start);
+    EXPECT_EQ(changed.leaf_counts().euler, 1);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_mesh
