@@ -266,15 +266,20 @@ bool HybridMesh::finer(HalfEdge h) const {
   return false;
 }
 
-bool HybridMesh::has_finer_neighbour(int node, int side) const { return finer(nodes_[node].half[side] ^ 1); }
-
-// Whether an active node holds the first (0) or last (1) part of the half-edge, however small.
-bool HybridMesh::touches(HalfEdge h, int part) const {
-  while (holder_[h] < 0) {
-    if (edges_[h >> 1].child < 0) return false;
-    h = half_child(h, part);
+bool HybridMesh::has_finer_neighbour(int node, int side) const {
+  // A refined node across may have lost all its quads there to an operation.
+  std::vector<HalfEdge> stack{nodes_[node].half[side] ^ 1};
+  while (!stack.empty()) {
+    const HalfEdge h = stack.back();
+    stack.pop_back();
+    if (edges_[h >> 1].child < 0) continue;
+    for (int part = 0; part < 2; ++part) {
+      const HalfEdge c = half_child(h, part);
+      if (holder_[c] >= 0 && nodes_[holder_[c] / 4].child < 0) return true;
+      stack.push_back(c);
+    }
   }
-  return true;
+  return false;
 }
 
 HalfEdge HybridMesh::descend(HalfEdge h, int cap) const {
@@ -407,8 +412,7 @@ int HybridMesh::refine(int n) {
         counts_.vertices += h < across;
         continue;
       }
-      const bool parts = edges_[h >> 1].child >= 0;
-      if (parts && (touches(half_child(across, 0), 1) || touches(half_child(across, 1), 0))) {
+      if (has_finer_neighbour(n, s)) {
         counts_.hanging -= 1;
       } else {
         counts_.vertices += 1;

@@ -276,7 +276,6 @@ class HybridMesh {
   Sector sector_right(HalfEdge leaving, int cap) const;  // clockwise
   SideLink holder_or_coarser(HalfEdge h) const;
   bool finer(HalfEdge h) const;
-  bool touches(HalfEdge h, int part) const;
   int add_edge(VertexId from, VertexId to, int level, int origin);
   void split_edge(int edge);
   int split(int node);
