@@ -350,7 +350,15 @@ void HybridMesh::visit_corner(int node, int corner, const Visit& visit) const {
 
 std::vector<int> HybridMesh::leaves_at_corner(int node, int corner) const {
   std::vector<int> after, before;
-  visit_corner(node, corner, [&](int leaf, bool clockwise) { (clockwise ? before : after).push_back(leaf); });
+  const auto visit = [&](int leaf, bool clockwise) { (clockwise ? before : after).push_back(leaf); };
+  visit_corner(node, corner, visit);
+  if (after.empty() && before.empty()) {
+    // The quads on both sides of a refined node's side were removed; what is left around the vertex has other edges.
+    const VertexId vertex = this->corner(node, corner);
+    for (int leaf : leaves())
+      for (int i = 0; i < 4 && after.empty(); ++i)
+        if (this->corner(leaf, i) == vertex) visit_corner(leaf, i, visit);
+  }
   std::reverse(before.begin(), before.end());
   before.insert(before.end(), after.begin(), after.end());
   std::vector<int> result;
