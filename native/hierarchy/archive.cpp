@@ -199,7 +199,7 @@ class HierarchyArchive {
         },
         [&](int o) { return parts.operations[o].level; }, [&](int o) { return parts.operations[o]; }, [](int, int) {});
     if (static_cast<std::size_t>(mesh.node_count()) != parts.refined.size()) refuse("fewer quads than were announced");
-    for (int cap = 0, last = mesh.depth(); cap <= last; ++cap) {
+    for (int cap = 0, last = mesh.deepest_level(); cap <= last; ++cap) {
       const std::string reason = mesh.find_fan_defect(cap);
       if (!reason.empty()) refuse(reason);
     }

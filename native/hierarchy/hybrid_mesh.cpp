@@ -132,6 +132,14 @@ int HybridMesh::depth() const {
   return depth;
 }
 
+// The level from which on the meshes of all levels are that of the leaves: one below depth() where the deepest refined quads have lost all their children.
+int HybridMesh::deepest_level() const {
+  int deepest = 0;
+  for (const Node& node : nodes_)
+    if (node.active) deepest = std::max(deepest, node.level + (node.child >= 0));
+  return deepest;
+}
+
 HybridMesh::Square HybridMesh::square_in(int node, int ancestor) const {
   Square square;
   while (node != ancestor) {

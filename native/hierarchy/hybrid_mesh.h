@@ -281,6 +281,7 @@ class HybridMesh {
   int split(int node);
   void activate();
   void count_leaves();
+  int deepest_level() const;
   template <class Visit>
   void visit_corner(int node, int corner, const Visit& visit) const;
   std::string complete_sides(Repatch& repatch) const;

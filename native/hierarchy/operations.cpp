@@ -291,7 +291,7 @@ std::string HybridMesh::apply(const Repatch& repatch) {
   if (!reason.empty()) return reason;
   const std::size_t old_nodes = nodes_.size(), old_edges = edges_.size(), old_free = free_.size();
   append(std::move(op));
-  for (int cap = repatch.level, last = std::max(cap, depth()); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  for (int cap = repatch.level, last = deepest_level(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
   if (reason.empty()) reason = find_double_edge(operations_.back());
   if (reason.empty() && leaves().empty()) reason = "nothing would be left of the mesh";
   if (reason.empty()) {
@@ -327,7 +327,7 @@ std::string HybridMesh::set_enabled(const std::vector<bool>& enabled) {
   for (std::size_t o = 0; o < operations_.size(); ++o) operations_[o].enabled = enabled[o];
   activate();
   std::string reason;
-  for (int cap = 0, last = depth(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  for (int cap = 0, last = deepest_level(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
   if (reason.empty()) return "";
   for (std::size_t o = 0; o < operations_.size(); ++o) operations_[o].enabled = before[o];
   activate();

@@ -213,5 +213,19 @@ TEST(IrregularOperations, CountsHoldWhereACoarseLeafMeetsAnEndOfAHole) {
   EXPECT_TRUE(sound_but_for_balance(mesh));
 }
 
+TEST(IrregularOperations, WhatIsLeftMustBeAManifoldWhereARefinedQuadHasLostAllItsChildren) {
+  HybridMesh mesh = square_grid(1);
+  const int first = mesh.first_child(0);
+  const auto children = [&](int n) {
+    const int child = mesh.refine(n);
+    return std::vector<int>{child, child + 1, child + 2, child + 3};
+  };
+  const std::vector<int> a = children(first + 1), b = children(first + 3);
+  ASSERT_EQ(mesh.apply(open_boundary(mesh, a).repatch), "");
+  // The two quads that are left would meet in a vertex alone.
+  EXPECT_NE(mesh.apply(open_boundary(mesh, b).repatch), "");
+  EXPECT_TRUE(sound(mesh));
+}
+
 }  // namespace
 }  // namespace hybrid_mesh
