@@ -136,7 +136,7 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
         const bool freed = holder_[h] >= 0 && is_removed(holder_[h] / 4);
         if (!freed) {
           if (holder_or_coarser(h).valid() || finer(h)) return side_name(q, s) + " takes the place of a quad that stays";
-          if (holder_[h ^ 1] < 0) return side_name(q, s) + " takes an edge without a quad of the same level";
+          if (!holder_or_coarser(h ^ 1).valid()) return side_name(q, s) + " takes an edge that no quad has";
         }
         anchored.insert(from(h));
         anchored.insert(to(h));

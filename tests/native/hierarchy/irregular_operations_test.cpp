@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "hierarchy/archive.h"
 #include "hierarchy/bases.h"
 
 namespace hybrid_mesh {
@@ -225,6 +226,31 @@ TEST(IrregularOperations, WhatIsLeftMustBeAManifoldWhereARefinedQuadHasLostAllIt
   // The two quads that are left would meet in a vertex alone.
   EXPECT_NE(mesh.apply(open_boundary(mesh, b).repatch), "");
   EXPECT_TRUE(sound(mesh));
+}
+
+TEST(IrregularOperations, AnArchiveMayGlueToACoarserQuad) {
+  // Of the level-2 quads that those of operation 1 were glued to, the coarser operation 2 leaves none.
+  HybridMesh mesh = grid(2, 1);
+  mesh.refine_uniform(2);
+  const int left = mesh.first_child(0) + 1, right = mesh.first_child(1);
+  const int hole = mesh.first_child(right) + 3;
+  const std::vector<HalfEdge> around = find_disk_region(mesh, {hole}).boundary;
+  ASSERT_EQ(mesh.apply(open_boundary(mesh, {hole}).repatch), "");
+  Repatch fill;
+  fill.level = 2;
+  fill.quads = {{0, 1, 2, 3}};
+  fill.sides.resize(1);
+  for (int s = 0; s < 4; ++s) {
+    fill.boundary.push_back(mesh.from(around[s]));
+    fill.sides[0][s].kind = Repatch::Side::Kind::Outer;
+    fill.sides[0][s].half = around[s];
+  }
+  ASSERT_EQ(mesh.apply(fill), "");
+  ASSERT_EQ(mesh.apply(free_layout(mesh, {left}, {{0, 1, 2, 3}}).repatch), "");
+  EXPECT_TRUE(sound_but_for_balance(mesh));
+  const HybridMesh again = put_together(take_apart(mesh));
+  EXPECT_TRUE(sound_but_for_balance(again));
+  EXPECT_EQ(again.final_mesh().indices, mesh.canonical().final_mesh().indices);
 }
 
 }  // namespace
