@@ -317,6 +317,21 @@ std::vector<bool> HybridMesh::enabled() const {
   return result;
 }
 
+// Why the enabled operations together make no hierarchy.
+std::string HybridMesh::find_choice_defect() const {
+  if (leaves().empty()) return "nothing would be left of the mesh";
+  for (int cap = 0, last = deepest_level(); cap <= last; ++cap) {
+    const std::string reason = find_fan_defect(cap);
+    if (!reason.empty()) return reason;
+  }
+  // An edge made by one operation may double one that another has removed.
+  for (const Operation& op : operations_) {
+    const std::string reason = op.enabled ? find_double_edge(op) : "";
+    if (!reason.empty()) return reason;
+  }
+  return "";
+}
+
 std::string HybridMesh::set_enabled(const std::vector<bool>& enabled) {
   if (enabled.size() != operations_.size()) return "as many choices are needed as there are operations";
   for (std::size_t o = 0; o < operations_.size(); ++o)
@@ -326,8 +341,7 @@ std::string HybridMesh::set_enabled(const std::vector<bool>& enabled) {
   if (enabled == before) return "";
   for (std::size_t o = 0; o < operations_.size(); ++o) operations_[o].enabled = enabled[o];
   activate();
-  std::string reason;
-  for (int cap = 0, last = deepest_level(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  const std::string reason = find_choice_defect();
   if (reason.empty()) return "";
   for (std::size_t o = 0; o < operations_.size(); ++o) operations_[o].enabled = before[o];
   activate();

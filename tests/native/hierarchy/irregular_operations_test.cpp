@@ -32,6 +32,24 @@ std::vector<int> active_of_level(const HybridMesh& mesh, int level) {
   return result;
 }
 
+// Everything that the hierarchy tells of itself.
+std::vector<std::int64_t> everything(const HybridMesh& mesh) {
+  std::vector<std::int64_t> result{mesh.node_count(), mesh.operation_count(), mesh.leaf_counts().vertices, mesh.leaf_counts().hanging, mesh.leaf_counts().euler};
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    for (std::int64_t x : {mesh.level(n), mesh.parent(n), mesh.first_child(n), mesh.root(n), mesh.inserted_by(n), mesh.removed_by(n), static_cast<int>(mesh.is_active(n))})
+      result.push_back(x);
+    for (int s = 0; s < 4; ++s) {
+      const SideLink other = mesh.neighbour(n, s);
+      for (std::int64_t x : {mesh.half_edge(n, s), mesh.corner(n, s).code, other.node, other.side}) result.push_back(x);
+    }
+  }
+  for (int o = 0; o < mesh.operation_count(); ++o) {
+    result.push_back(mesh.operation(o).enabled);
+    for (int d : mesh.operation(o).depends) result.push_back(d);
+  }
+  return result;
+}
+
 // --- single operations ---------------------------------------------------------------------------------------------------------------------------
 
 // A block of quads of a level of a refined grid of one quad: columns [x0, x1), rows [y0, y1).
@@ -251,6 +269,53 @@ TEST(IrregularOperations, AnArchiveMayGlueToACoarserQuad) {
   const HybridMesh again = put_together(take_apart(mesh));
   EXPECT_TRUE(sound_but_for_balance(again));
   EXPECT_EQ(again.final_mesh().indices, mesh.canonical().final_mesh().indices);
+}
+
+TEST(IrregularOperations, NoChoiceJoinsTwoVerticesTwice) {
+  // Six sides around two quads: their middle edge is removed, then made again on the other side.
+  HybridMesh mesh = cube();
+  mesh.refine_uniform(1);
+  const std::vector<int> two{mesh.first_child(0), mesh.first_child(0) + 1};
+  std::vector<int> others;
+  for (int n : active_of_level(mesh, 1))
+    if (n != two[0] && n != two[1]) others.push_back(n);
+  const DiskRegion region = find_disk_region(mesh, two);
+  int middle = 0;  // first of the corners that the middle edge joins
+  const auto has = [&](int n, VertexId v) { return mesh.corner(n, 0) == v || mesh.corner(n, 1) == v || mesh.corner(n, 2) == v || mesh.corner(n, 3) == v; };
+  while (!has(two[0], region.corners[middle]) || !has(two[1], region.corners[middle])) ++middle;
+  const auto halves = [](int from) {
+    return std::vector<std::array<int, 4>>{{from % 6, (from + 1) % 6, (from + 2) % 6, (from + 3) % 6}, {(from + 3) % 6, (from + 4) % 6, (from + 5) % 6, from % 6}};
+  };
+  const DiskRegion back = find_disk_region(mesh, others);
+  const int start = static_cast<int>(std::find(back.corners.begin(), back.corners.end(), region.corners[middle]) - back.corners.begin());
+  EXPECT_NE(mesh.apply(free_layout(mesh, others, halves(start)).repatch), "");
+  ASSERT_EQ(mesh.apply(free_layout(mesh, two, halves(middle + 1)).repatch), "");
+  ASSERT_EQ(mesh.apply(free_layout(mesh, others, halves(start)).repatch), "");
+  EXPECT_TRUE(sound(mesh));
+  const auto before = everything(mesh);
+  EXPECT_NE(mesh.set_enabled({false, true}), "");
+  EXPECT_EQ(everything(mesh), before);
+  EXPECT_EQ(mesh.set_enabled({true, false}), "");
+}
+
+TEST(IrregularOperations, NoChoiceLeavesNothing) {
+  HybridMesh mesh = square_grid(1);
+  // A quad grows on the boundary, then all others go.
+  Repatch grown;
+  grown.level = 1;
+  const HalfEdge rim = mesh.half_edge(mesh.first_child(0), 0) ^ 1;
+  grown.boundary = {mesh.from(rim), mesh.to(rim)};
+  grown.new_vertices = 2;
+  grown.quads = {{0, 1, -1, -2}};
+  grown.sides.resize(1);
+  grown.sides[0][0].kind = Repatch::Side::Kind::Outer;
+  grown.sides[0][0].half = rim;
+  ASSERT_EQ(mesh.apply(grown), "");
+  ASSERT_EQ(mesh.apply(open_boundary(mesh, active_of_level(mesh, 1)).repatch), "");
+  EXPECT_EQ(mesh.leaves().size(), 1u);
+  const auto before = everything(mesh);
+  EXPECT_NE(mesh.set_enabled({false, true}), "");
+  EXPECT_EQ(everything(mesh), before);
 }
 
 }  // namespace
