@@ -199,11 +199,9 @@ class HierarchyArchive {
         },
         [&](int o) { return parts.operations[o].level; }, [&](int o) { return parts.operations[o]; }, [](int, int) {});
     if (static_cast<std::size_t>(mesh.node_count()) != parts.refined.size()) refuse("fewer quads than were announced");
-    for (int cap = 0, last = mesh.depth(); cap <= last; ++cap) {
-      const std::string reason = mesh.find_fan_defect(cap);
-      if (!reason.empty()) refuse(reason);
-    }
-    const std::string reason = mesh.set_enabled(parts.enabled);
+    std::string reason = mesh.find_choice_defect();
+    if (!reason.empty()) refuse(reason);
+    reason = mesh.set_enabled(parts.enabled);
     if (!reason.empty()) refuse(reason);
     if (parts.level_positions.size() > HybridMesh::max_level + 1) refuse("positions of too many levels");
     for (const auto& positions : parts.level_positions) check_positions(mesh, positions);

@@ -170,7 +170,7 @@ class HierarchyAccess {
   }
 
   void check_manifolds() {
-    for (int j = 0, last = mesh_.depth(); j <= last; ++j) {
+    for (int j = 0, last = mesh_.deepest_level(); j <= last; ++j) {
       const std::string defect = mesh_.find_fan_defect(j);
       if (!defect.empty()) add(defect);
     }

@@ -53,6 +53,11 @@ HybridMesh::Polygons HybridMesh::polygons(int cap, LevelKind kind) const {
     for (HalfEdge h : nodes_[face.node].half) used[vertex_slot(from(h))] = 1;
   result.corners.reserve(4 * result.faces.size() + 16);
   result.offsets.reserve(result.faces.size() + 1);
+  // Whether a face has a corner inside an edge: then it is cut in its middle. Where leaves are balanced, the middle itself is that corner.
+  const auto used_inside = [&](const auto& self, int e) -> bool {
+    if (edges_[e].child < 0 || edges_[e].level >= result.highest) return false;
+    return used[vertex_slot(VertexId(VertexId::Kind::Edge, e))] || self(self, edges_[e].child) || self(self, edges_[e].child + 1);
+  };
   struct Part {
     HalfEdge half;
     double begin, end;
@@ -62,13 +67,12 @@ HybridMesh::Polygons HybridMesh::polygons(int cap, LevelKind kind) const {
     for (int s = 0; s < 4; ++s) {
       const double u0 = face.square.u + face.square.width * side_u[s], v0 = face.square.v + face.square.width * side_v[s];
       const double du = face.square.width * (side_u[(s + 1) % 4] - side_u[s]), dv = face.square.width * (side_v[(s + 1) % 4] - side_v[s]);
-      // Where leaves are balanced nothing inside a side is used unless its middle is.
       parts.assign(1, {nodes_[face.node].half[s], 0.0, 1.0});
       while (!parts.empty()) {
         const Part part = parts.back();
         parts.pop_back();
         const int e = part.half >> 1;
-        if (edges_[e].child >= 0 && edges_[e].level < result.highest && used[vertex_slot(VertexId(VertexId::Kind::Edge, e))]) {
+        if (used_inside(used_inside, e)) {
           const double t = 0.5 * (part.begin + part.end);
           parts.push_back({half_child(part.half, 1), t, part.end});
           parts.push_back({half_child(part.half, 0), part.begin, t});

@@ -132,6 +132,14 @@ int HybridMesh::depth() const {
   return depth;
 }
 
+// The level from which on the meshes of all levels are that of the leaves: one below depth() where the deepest refined quads have lost all their children.
+int HybridMesh::deepest_level() const {
+  int deepest = 0;
+  for (const Node& node : nodes_)
+    if (node.active) deepest = std::max(deepest, node.level + (node.child >= 0));
+  return deepest;
+}
+
 HybridMesh::Square HybridMesh::square_in(int node, int ancestor) const {
   Square square;
   while (node != ancestor) {
@@ -266,15 +274,20 @@ bool HybridMesh::finer(HalfEdge h) const {
   return false;
 }
 
-bool HybridMesh::has_finer_neighbour(int node, int side) const { return finer(nodes_[node].half[side] ^ 1); }
-
-// Whether an active node holds the first (0) or last (1) part of the half-edge, however small.
-bool HybridMesh::touches(HalfEdge h, int part) const {
-  while (holder_[h] < 0) {
-    if (edges_[h >> 1].child < 0) return false;
-    h = half_child(h, part);
+bool HybridMesh::has_finer_neighbour(int node, int side) const {
+  // A refined node across may have lost all its quads there to an operation.
+  std::vector<HalfEdge> stack{nodes_[node].half[side] ^ 1};
+  while (!stack.empty()) {
+    const HalfEdge h = stack.back();
+    stack.pop_back();
+    if (edges_[h >> 1].child < 0) continue;
+    for (int part = 0; part < 2; ++part) {
+      const HalfEdge c = half_child(h, part);
+      if (holder_[c] >= 0 && nodes_[holder_[c] / 4].child < 0) return true;
+      stack.push_back(c);
+    }
   }
-  return true;
+  return false;
 }
 
 HalfEdge HybridMesh::descend(HalfEdge h, int cap) const {
@@ -345,7 +358,15 @@ void HybridMesh::visit_corner(int node, int corner, const Visit& visit) const {
 
 std::vector<int> HybridMesh::leaves_at_corner(int node, int corner) const {
   std::vector<int> after, before;
-  visit_corner(node, corner, [&](int leaf, bool clockwise) { (clockwise ? before : after).push_back(leaf); });
+  const auto visit = [&](int leaf, bool clockwise) { (clockwise ? before : after).push_back(leaf); };
+  visit_corner(node, corner, visit);
+  if (after.empty() && before.empty()) {
+    // The quads on both sides of a refined node's side were removed; what is left around the vertex has other edges.
+    const VertexId vertex = this->corner(node, corner);
+    for (int leaf : leaves())
+      for (int i = 0; i < 4 && after.empty(); ++i)
+        if (this->corner(leaf, i) == vertex) visit_corner(leaf, i, visit);
+  }
   std::reverse(before.begin(), before.end());
   before.insert(before.end(), after.begin(), after.end());
   std::vector<int> result;
@@ -407,8 +428,7 @@ int HybridMesh::refine(int n) {
         counts_.vertices += h < across;
         continue;
       }
-      const bool parts = edges_[h >> 1].child >= 0;
-      if (parts && (touches(half_child(across, 0), 1) || touches(half_child(across, 1), 0))) {
+      if (has_finer_neighbour(n, s)) {
         counts_.hanging -= 1;
       } else {
         counts_.vertices += 1;

@@ -276,12 +276,12 @@ class HybridMesh {
   Sector sector_right(HalfEdge leaving, int cap) const;  // clockwise
   SideLink holder_or_coarser(HalfEdge h) const;
   bool finer(HalfEdge h) const;
-  bool touches(HalfEdge h, int part) const;
   int add_edge(VertexId from, VertexId to, int level, int origin);
   void split_edge(int edge);
   int split(int node);
   void activate();
   void count_leaves();
+  int deepest_level() const;
   template <class Visit>
   void visit_corner(int node, int corner, const Visit& visit) const;
   std::string complete_sides(Repatch& repatch) const;
@@ -291,6 +291,7 @@ class HybridMesh {
   void deactivate(int node);
   std::string find_fan_defect(int cap) const;
   std::string find_double_edge(const Operation& operation) const;
+  std::string find_choice_defect() const;
   // The faces of a level and the loops of their corners (leaf_polygons.h).
   struct Polygons;
   Polygons polygons(int cap, LevelKind kind) const;

@@ -136,7 +136,7 @@ std::string HybridMesh::validate(const Repatch& repatch) const {
         const bool freed = holder_[h] >= 0 && is_removed(holder_[h] / 4);
         if (!freed) {
           if (holder_or_coarser(h).valid() || finer(h)) return side_name(q, s) + " takes the place of a quad that stays";
-          if (holder_[h ^ 1] < 0) return side_name(q, s) + " takes an edge without a quad of the same level";
+          if (!holder_or_coarser(h ^ 1).valid()) return side_name(q, s) + " takes an edge that no quad has";
         }
         anchored.insert(from(h));
         anchored.insert(to(h));
@@ -291,7 +291,7 @@ std::string HybridMesh::apply(const Repatch& repatch) {
   if (!reason.empty()) return reason;
   const std::size_t old_nodes = nodes_.size(), old_edges = edges_.size(), old_free = free_.size();
   append(std::move(op));
-  for (int cap = repatch.level, last = std::max(cap, depth()); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  for (int cap = repatch.level, last = deepest_level(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
   if (reason.empty()) reason = find_double_edge(operations_.back());
   if (reason.empty() && leaves().empty()) reason = "nothing would be left of the mesh";
   if (reason.empty()) {
@@ -317,6 +317,21 @@ std::vector<bool> HybridMesh::enabled() const {
   return result;
 }
 
+// Why the enabled operations together make no hierarchy.
+std::string HybridMesh::find_choice_defect() const {
+  if (leaves().empty()) return "nothing would be left of the mesh";
+  for (int cap = 0, last = deepest_level(); cap <= last; ++cap) {
+    const std::string reason = find_fan_defect(cap);
+    if (!reason.empty()) return reason;
+  }
+  // An edge made by one operation may double one that another has removed.
+  for (const Operation& op : operations_) {
+    const std::string reason = op.enabled ? find_double_edge(op) : "";
+    if (!reason.empty()) return reason;
+  }
+  return "";
+}
+
 std::string HybridMesh::set_enabled(const std::vector<bool>& enabled) {
   if (enabled.size() != operations_.size()) return "as many choices are needed as there are operations";
   for (std::size_t o = 0; o < operations_.size(); ++o)
@@ -326,8 +341,7 @@ std::string HybridMesh::set_enabled(const std::vector<bool>& enabled) {
   if (enabled == before) return "";
   for (std::size_t o = 0; o < operations_.size(); ++o) operations_[o].enabled = enabled[o];
   activate();
-  std::string reason;
-  for (int cap = 0, last = depth(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
+  const std::string reason = find_choice_defect();
   if (reason.empty()) return "";
   for (std::size_t o = 0; o < operations_.size(); ++o) operations_[o].enabled = before[o];
   activate();
