@@ -89,12 +89,13 @@ class CoarseSurface {
 BaseDomain::BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress) : surface_(surface), decimated_(surface) {
   DecimationOptions decimation;
   // Room for the clean-up of the quads, which merges some of them.
-  decimation.target_faces = std::max(4, static_cast<int>(2.6 * options.size));
+  decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(2.6 * options.size)});
   decimation.seed = options.seed;
   std::vector<VertexQuadric> quadrics = decimate(decimated_, surface.points, decimation, log_, progress.part(0, 0.8));
   QuadLayoutOptions layout_options;
   layout_options.size = options.size;
   layout_options.boundary_side = options.boundary_side;
+  layout_options.least = options.least;
   layout_options.seed = options.seed;
   layout_ = make_quad_layout(decimated_, surface.points, std::move(quadrics), layout_options, log_, progress.part(0.8, 1));
 }

@@ -14,6 +14,7 @@ namespace hybrid_mesh {
 struct BaseDomainOptions {
   double size = 300;                // of the base domain: its quads, plus `boundary_side` for each side on the surface's boundary
   double boundary_side = 0;
+  int least = 0;                    // coarsening stops before there are fewer quads
   std::uint64_t seed = 1;
 };
 

@@ -33,7 +33,10 @@ class Decimation {
     for (std::size_t f = 0; f < mesh.alive.size(); ++f)
       if (mesh.alive[f]) add_face(static_cast<int>(f));
     for (std::size_t v = 0; v < points.size(); ++v)
-      if (mesh.vertex_alive(static_cast<int>(v))) valences_[v] = mesh.valence(static_cast<int>(v));
+      if (mesh.vertex_alive(static_cast<int>(v))) {
+        valences_[v] = mesh.valence(static_cast<int>(v));
+        loose_ += is_loose(static_cast<int>(v));
+      }
   }
 
   void run(const Progress& progress) {
@@ -41,12 +44,13 @@ class Decimation {
     int next_flips = static_cast<int>(0.7 * std::min<double>(initial, 12.0 * options_.target_faces));
     refill();
     int steps = 0;
-    while (mesh_.face_count > options_.target_faces && !heap_.empty()) {
+    while ((mesh_.face_count > options_.target_faces || loose_ > 0) && !heap_.empty()) {
       if (++steps % 512 == 0)
         progress(std::clamp((std::log(initial) - std::log(mesh_.face_count)) / std::max(1e-9, std::log(initial) - std::log(options_.target_faces)), 0.0, 1.0));
       const Candidate best = heap_.top();
       heap_.pop();
       if (!mesh_.vertex_alive(best.vertex) || best.stamp != stamps_[best.vertex]) continue;
+      if (mesh_.face_count <= options_.target_faces && !is_loose(best.vertex)) continue;
       collapse(best.half_edge);
       if (mesh_.face_count <= next_flips) {
         flips();
@@ -129,8 +133,12 @@ class Decimation {
     return error * (1 + 1e-3 * jitter(options_.seed, v));
   }
 
+  // On a boundary that is to be left with the fixed vertices only.
+  bool is_loose(int v) const { return !options_.fixed.empty() && !options_.fixed[v] && mesh_.is_boundary(v); }
+
   void push(int v) {
     ++stamps_[v];
+    if (!options_.fixed.empty() && options_.fixed[v]) return;
     scratch_.clear();
     int g = mesh_.out[v];
     do {
@@ -162,6 +170,7 @@ class Decimation {
     if (o >= 0) --valences_[mesh_.apex(o)];
     quadrics_[u].planes += quadrics_[v].planes;
     quadrics_[u].area += quadrics_[v].area;
+    loose_ -= is_loose(v);
     mesh_.collapse(h);
     log_.push_back({MeshEdit::Kind::Collapse, h});
     mesh_.ring(u, ring_);
@@ -217,6 +226,7 @@ class Decimation {
   std::priority_queue<Candidate> heap_;
   std::vector<Candidate> scratch_;
   std::vector<int> ring_;
+  int loose_ = 0;
 };
 
 }  // namespace

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
-#include "parameterization/patch_extraction.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -26,52 +26,205 @@ struct Candidate {
 
 class LayoutSearch {
  public:
-  LayoutSearch(PatchedSurface& surface, const std::vector<std::array<int, 3>>& faces, const LayoutSearchOptions& options)
-      : faces_(faces), options_(options), mapped_{std::move(surface), {}} {}
+  explicit LayoutSearch(CarriedMap map) : best_(std::move(map)) {}
 
-  LayoutSearchResult run(PatchedSurface& surface, const Progress& progress) {
-    mapped_.corners = map_patches(mapped_.surface, progress.part(0, 0.05));
-    std::optional<ChartMesh> best;
-    std::vector<LayoutEdit> best_edits;
-    double least = 0;
-    for (int round = 0;; ++round) {
-      const Progress part = progress.part(0.05 + 0.95 * round / (options_.rounds + 1), 0.05 + 0.95 * (round + 1) / (options_.rounds + 1));
+  LayoutSearchResult run(const LayoutSearchOptions& options, const Progress& progress) {
+    const double parts = 2.0 + static_cast<double>(options.finer.size());
+    options_ = &options;
+    mapped_.corners = map_patches(best_.layout, progress.part(0, 0.05));
+    mapped_.surface = best_.layout;
+    smooth(options.map, progress.part(0.05, 1 / parts));
+    accept();
+    improve(progress.part(1 / parts, 2 / parts));
+    LayoutSearchResult result;
+    // Each at once: where a map cannot be carried back, further search is in vain.
+    const auto keep = [&](CarriedMap map, const Progress& part) {
+      if (!options.finer.empty()) map.carry(std::numeric_limits<double>::infinity(), options.map, part);
+      result.stages.push_back({static_cast<int>(best_edits_.size()) - 1, std::move(map)});
+    };
+    for (const LayoutSearchOptions& finer : options.finer) {
+      const double begin = static_cast<double>(best_edits_.size() + 1) / parts;
+      options_ = &finer;
+      if (result.stages.empty() || !best_edits_.back().empty()) keep(best_, progress.part(begin, begin));
       try {
-        GlobalMapOptions map = options_.map;
-        // Most of the map is as it was the round before.
-        if (round > 0) map.newton_steps /= 2, map.cone_rounds /= 2;
-        ChartMesh charts(mapped_.surface, mapped_.corners);
-        const GlobalMapReport report = smooth_map(charts, mapped_.surface, map, part.part(0, 0.4));
-        const double excess = (report.energy - 1) * mapped_.surface.patch_count();
-        if (best && !(excess < least)) break;
-        least = excess;
-        surface = mapped_.surface;
-        best_edits = edits_;
-        best = charts;
-        if (round == options_.rounds) break;
-        glue(charts, part.part(0.4, 0.5));
-        std::vector<Candidate> candidates = find_candidates();
-        tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
-          part.check();
-          candidates[i].gain = measure_gain(candidates[i], part.part(0.5, 0.5));
-        });
-        if (!apply_best(candidates, part)) break;
+        best_.carry(finer.vertices, finer.map, progress.part(begin, begin + 0.2 / parts));
       } catch (const Error& e) {
-        // What was found before stays.
-        if (e.code() != ErrorCode::Internal || !best) throw;
-        break;
+        if (e.code() != ErrorCode::Internal) throw;  // a coarser surface than wished does as well as it can
       }
-      part(1);
+      best_.quadrisect();
+      least_ *= 4;
+      best_edits_.emplace_back();
+      edits_ = best_edits_;
+      if (finer.relayout > 0) relayout(progress);
+      improve(progress.part(begin + 0.2 / parts, begin + 1 / parts));
     }
-    return {std::move(*best), std::move(best_edits)};
+    if (result.stages.empty() || !best_edits_.back().empty()) keep(std::move(best_), progress.part(1, 1));
+    result.edits = std::move(best_edits_);
+    return result;
   }
 
  private:
-  void glue(ChartMesh& charts, const Progress& progress) {
-    scale_ = charts.scale;
-    mapped_ = glue_patch_maps(extract_patch_maps(charts, mapped_.surface, faces_, progress), mapped_.surface, faces_);
+  // Patches that share a node with one of the given, and the given.
+  std::vector<char> dilated(const std::vector<char>& in) const {
+    const PatchedSurface& s = mapped_.surface;
+    std::vector<char> node(s.node_count, 0), out = in;
+    for (int q = 0; q < s.patch_count(); ++q)
+      if (in[q])
+        for (const int n : s.nodes[q]) node[n] = 1;
+    for (int q = 0; q < s.patch_count(); ++q)
+      for (const int n : s.nodes[q]) out[q] |= node[n];
+    return out;
+  }
+
+  // Connected sets of patches, across sides.
+  std::vector<std::vector<int>> components(const std::vector<char>& in, char value) const {
+    const PatchedSurface& s = mapped_.surface;
+    std::vector<std::vector<int>> parts;
+    std::vector<char> seen(s.patch_count(), 0);
+    for (int first = 0; first < s.patch_count(); ++first) {
+      if (in[first] != value || seen[first]) continue;
+      std::vector<int> part{first};
+      seen[first] = 1;
+      for (std::size_t i = 0; i < part.size(); ++i)
+        for (const PatchSide& other : s.neighbours[part[i]])
+          if (other.patch >= 0 && in[other.patch] == value && !seen[other.patch]) {
+            seen[other.patch] = 1;
+            part.push_back(other.patch);
+          }
+      std::sort(part.begin(), part.end());
+      parts.push_back(std::move(part));
+    }
+    return parts;
+  }
+
+  // Disks that hold the given patches, and more where these alone are none.
+  std::vector<PatchRegion> disks(std::vector<char> in) const {
+    const PatchedSurface& s = mapped_.surface;
+    std::vector<PatchRegion> regions;
+    std::vector<char> taken(s.patch_count(), 0);
+    for (const std::vector<int>& seed : components(in, 1)) {
+      std::vector<char> region(s.patch_count(), 0);
+      for (const int q : seed) region[q] = 1;
+      for (int ring = 0; ring < 4; ++ring) {
+        // What the region encloses joins it.
+        std::vector<std::vector<int>> outside = components(region, 0);
+        std::size_t largest = 0;
+        for (std::size_t i = 0; i < outside.size(); ++i)
+          if (outside[i].size() > outside[largest].size()) largest = i;
+        for (std::size_t i = 0; i < outside.size(); ++i)
+          if (i != largest)
+            for (const int q : outside[i]) region[q] = 1;
+        std::vector<int> patches;
+        bool free = true;
+        for (int q = 0; q < s.patch_count(); ++q)
+          if (region[q]) {
+            patches.push_back(q);
+            free &= !taken[q];
+          }
+        if (!free) break;
+        if (std::optional<PatchRegion> disk = make_region(s, patches)) {
+          for (const int q : patches) taken[q] = 1;
+          regions.push_back(std::move(*disk));
+          break;
+        }
+        region = dilated(region);
+      }
+    }
+    return regions;
+  }
+
+  void relayout(const Progress& progress) {
+    try {
+      cut(progress);
+      const PatchedSurface& s = mapped_.surface;
+      std::vector<double> area(s.patch_count(), 0);
+      double all = 0;
+      for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) {
+        const auto& c = s.mesh.faces[f];
+        const double a = 0.5 * (s.mesh.points[c[1]] - s.mesh.points[c[0]]).cross(s.mesh.points[c[2]] - s.mesh.points[c[0]]).norm();
+        area[s.patch[f]] += a;
+        all += a;
+      }
+      std::vector<char> poor(s.patch_count(), 0);
+      for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->relayout || energy_[q] * all > options_->relayout * area[q] * s.patch_count();
+      std::vector<DrawnEdit> chosen;
+      for (const PatchRegion& region : disks(dilated(poor))) {
+        double wanted = 0;
+        for (const int q : region.patches) wanted += area[q] / all * s.patch_count();
+        wanted = std::max(wanted, 1.0);
+        std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
+        if (edit) chosen.push_back(std::move(*edit));
+      }
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        edits_.back().push_back(chosen[i].edit);
+        const LayoutChange change = apply_edit(mapped_, std::move(chosen[i]));
+        map_patches(mapped_.surface, change.added, mapped_.corners, progress);
+        for (std::size_t k = i + 1; k < chosen.size(); ++k) chosen[k].edit = renumbered(std::move(chosen[k].edit), change);
+      }
+      if (chosen.empty()) return;
+      smooth(options_->map, progress);
+      if (excess_ < least_) accept();
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+    }
+    edits_ = best_edits_;
+  }
+
+  // Rounds of edits, and of smoothing after each, for as long as that gains.
+  void improve(const Progress& progress) {
+    for (int round = 0; round < options_->rounds; ++round) {
+      const Progress part = progress.part(static_cast<double>(round) / options_->rounds, (round + 1.0) / options_->rounds);
+      try {
+        cut(part.part(0, 0.1));
+        std::vector<Candidate> candidates = find_candidates();
+        tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+          part.check();
+          candidates[i].gain = measure_gain(candidates[i], part.part(0.1, 0.1));
+        });
+        if (!apply_best(candidates, part)) return;
+        GlobalMapOptions map = options_->map;
+        // Most of the map is as it was the round before.
+        map.newton_steps /= 2;
+        map.cone_rounds /= 2;
+        smooth(map, part.part(0.6, 1));
+        if (!(excess_ < least_)) return;
+        accept();
+      } catch (const Error& e) {
+        // What was found before stays.
+        if (e.code() != ErrorCode::Internal) throw;
+        return;
+      }
+      part(1);
+    }
+  }
+
+  // Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
+  void smooth(GlobalMapOptions options, const Progress& progress) {
+    for (int attempt = 0;; ++attempt) {
+      try {
+        fresh_.emplace(mapped_.surface, mapped_.corners);
+        const GlobalMapReport report = smooth_map(*fresh_, mapped_.surface, options, progress);
+        excess_ = (report.energy - 1) * mapped_.surface.patch_count();
+        return;
+      } catch (const Error& e) {
+        if (e.code() != ErrorCode::Internal || attempt == 2) throw;
+        options.vertices_a_quad *= 3;
+      }
+    }
+  }
+
+  void accept() {
+    least_ = excess_;
+    best_edits_ = edits_;
+    best_.layout = mapped_.surface;
+    best_.charts = std::move(*fresh_);
+  }
+
+  void cut(const Progress& progress) {
+    scale_ = best_.charts.scale;
+    mapped_ = best_.cut(progress);
     energy_.assign(mapped_.surface.patch_count(), 0);
-    const Distortion density{options_.map.theta};
+    const Distortion density{options_->map.theta};
     for (int f = 0; f < static_cast<int>(mapped_.surface.patch.size()); ++f) energy_[mapped_.surface.patch[f]] += face_excess(f, density);
   }
 
@@ -110,12 +263,12 @@ class LayoutSearch {
       for (const int q : region.patches) c.excess += energy_[q];
       found.push_back(std::move(c));
     };
-    const bool room = s.patch_count() < options_.quads;
+    const bool room = s.patch_count() < options_->quads;
     const auto add_ring = [&](const std::vector<int>& patches) {
       if (!room) return;
       if (const auto region = make_region(s, patches))
-        if (const auto edit = ring_edit(s, *region))
-          if (s.patch_count() + edit->growth() <= options_.quads) add(*region, *edit);
+        if (const auto edit = tower_edit(s, *region, 1))
+          if (s.patch_count() + edit->growth() <= options_->quads) add(*region, *edit);
     };
     for (int q = 0; q < s.patch_count(); ++q) {
       add_ring({q});
@@ -151,7 +304,16 @@ class LayoutSearch {
       const double x = a.excess / (a.region.patches.size() + a.edit.growth()), y = b.excess / (b.region.patches.size() + b.edit.growth());
       return x != y ? x > y : a.region.patches < b.region.patches;
     });
-    if (static_cast<int>(found.size()) > options_.trials) found.resize(options_.trials);
+    if (static_cast<int>(found.size()) > options_->trials) found.resize(options_->trials);
+    for (std::size_t i = 0, n = found.size(); i < n; ++i) {
+      if (found[i].edit.rings == 0) continue;
+      const int height = std::min(8, tower_height(s, found[i].region));
+      if (height < 2) continue;
+      Candidate tall = found[i];
+      tall.edit = *tower_edit(s, tall.region, height);
+      if (s.patch_count() + tall.edit.growth() > options_->quads) continue;
+      found.push_back(std::move(tall));
+    }
     return found;
   }
 
@@ -184,13 +346,13 @@ class LayoutSearch {
     for (std::size_t k = 0; k < candidate.edit.patches.size(); ++k)
       if (candidate.edit.patches[k] == candidate.edit.start.patch) edit.start.patch = static_cast<int>(k);
     try {
-      const std::vector<int> fresh = apply_edit(local, edit);
+      const std::vector<int> fresh = apply_edit(local, edit).added;
       map_patches(local.surface, fresh, local.corners, progress);
       ChartMesh charts(local.surface, local.corners);
       charts.scale = scale_;
       double area = 0;
       for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
-      GlobalMapOptions options = options_.map;
+      GlobalMapOptions options = options_->map;
       options.newton_steps = 3;
       options.cone_rounds = 1;
       options.sweeps = 1;
@@ -210,7 +372,7 @@ class LayoutSearch {
     int size = s.patch_count();
     for (const Candidate& c : candidates) {
       if (worth(c) <= 0.05) break;
-      if (size + c.edit.growth() > options_.quads) continue;
+      if (size + c.edit.growth() > options_->quads) continue;
       const std::vector<int> patches = with_surroundings(c.region);
       if (std::any_of(patches.begin(), patches.end(), [&](int q) { return touched[q]; })) continue;
       for (const int q : patches) touched[q] = 1;
@@ -219,27 +381,26 @@ class LayoutSearch {
     }
     // Edits that do not shrink leave other patches' numbers alone.
     for (const LayoutEdit& edit : chosen) {
-      const std::vector<int> fresh = apply_edit(mapped_, edit);
-      map_patches(mapped_.surface, fresh, mapped_.corners, progress.part(1, 1));
-      edits_.push_back(edit);
+      map_patches(mapped_.surface, apply_edit(mapped_, edit).added, mapped_.corners, progress.part(1, 1));
+      edits_.back().push_back(edit);
     }
     return !chosen.empty();
   }
 
-  double worth(const Candidate& c) const { return c.gain - options_.price * c.edit.growth() - options_.irregular_price * c.irregular; }
+  double worth(const Candidate& c) const { return c.gain - options_->price * c.edit.growth() - options_->irregular_price * c.irregular; }
 
-  const std::vector<std::array<int, 3>>& faces_;
-  const LayoutSearchOptions& options_;
-  MappedSurface mapped_;
+  CarriedMap best_;                // the best found
+  std::optional<ChartMesh> fresh_;
+  MappedSurface mapped_;           // cut along the best layout, or an edited one
+  const LayoutSearchOptions* options_ = nullptr;  // of the present level
+  std::vector<LevelEdits> best_edits_, edits_{1};
+  double least_ = 0, excess_ = 0;  // energy of the best and of the fresh map beyond an isometry's, in quads of the present level
   double scale_ = 1;
   std::vector<double> energy_;    // per patch, beyond an isometry's
-  std::vector<LayoutEdit> edits_;
 };
 
 }  // namespace
 
-LayoutSearchResult search_layout(PatchedSurface& surface, const std::vector<std::array<int, 3>>& faces, const LayoutSearchOptions& options, const Progress& progress) {
-  return LayoutSearch(surface, faces, options).run(surface, progress);
-}
+LayoutSearchResult search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress) { return LayoutSearch(std::move(map)).run(options, progress); }
 
 }  // namespace hybrid_mesh

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "layout/carried_map.h"
 #include "layout/region_layout.h"
 #include "parameterization/global_map.h"
 
@@ -11,20 +12,32 @@ namespace hybrid_mesh {
 
 struct LayoutSearchOptions {
   GlobalMapOptions map;
+  double vertices = 0;     // of the coarse surface that is worked on
   int quads = 0;           // the layout may grow up to so many
   double price = 0.1;      // energy that a further quad must save, in quads
   double irregular_price = 0.06;  // ... and a further irregular node
   int rounds = 4;
   int trials = 80;         // a round
+  double relayout = 0;     // regions of quads with more energy than this beyond an isometry's are laid out anew first; 0: none
+  std::vector<LayoutSearchOptions> finer;  // of the levels above the base
 };
+
+// Edits of one level's quads, first one first.
+using LevelEdits = std::vector<LayoutEdit>;
 
 struct LayoutSearchResult {
-  ChartMesh charts;
-  std::vector<LayoutEdit> edits;  // first one first
+  std::vector<LevelEdits> edits;  // a level each
+  // The map of the base domain, and that of the quads of each finer level that was edited; carried to the surface if there are finer levels.
+  struct Stage {
+    int level;
+    CarriedMap map;
+  };
+  std::vector<Stage> stages;
 };
 
-// Smooths the map of a patched surface, and improves its layout by local edits between: each is tried out, the region and its surroundings mapped anew, and kept where the map's
-// energy falls. `surface` becomes the one with the layout found, cut along it. Returns its smooth map and the edits that led there. `faces`: what the points of `surface` name as their source.
-LayoutSearchResult search_layout(PatchedSurface& surface, const std::vector<std::array<int, 3>>& faces, const LayoutSearchOptions& options, const Progress& progress);
+// Smooths the map of a cut surface, and improves its layout by local edits between: each is tried out, the region and its surroundings mapped anew, and kept where the map's
+// energy falls. Then the same with the quads quadrisected, as often as there are options for finer levels, each on a finer version of the surface. `map` comes with a cut surface.
+// Throws Error{Internal} where a map cannot be found or carried to the surface.
+LayoutSearchResult search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

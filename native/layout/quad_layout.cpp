@@ -34,15 +34,38 @@ class QuadCoarsening {
     int rounds = 0;
     while (size() > options_.size) {
       progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
+      // Few quads may clean each other away.
+      const bool last_ones = quad_count() < 2 * options_.least + 8;
+      const State before = last_ones ? State{log_.size(), mate_, split_, quadrics_} : State{};
       if (!collapse_cheapest()) break;
       clean();
+      if (!last_ones || quad_count() >= options_.least) continue;
+      restore(before);
+      break;
     }
-    clean();
+    if (quad_count() > options_.least) clean();
     progress(1);
     return layout();
   }
 
  private:
+  struct State {
+    std::size_t log = 0;
+    std::vector<int> mate, split;
+    std::vector<VertexQuadric> quadrics;
+  };
+  void restore(const State& state) {
+    for (; log_.size() > state.log; log_.pop_back()) {
+      if (log_.back().kind == MeshEdit::Kind::Collapse)
+        mesh_.undo_collapse(log_.back().half_edge);
+      else
+        mesh_.undo_flip(log_.back().half_edge);
+    }
+    mate_ = state.mate;
+    split_ = state.split;
+    quadrics_ = state.quadrics;
+  }
+
   // --- quads as pairs of triangles -------------------------------------------------------------------------------------------
   bool is_pair(int f) const { return mate_[f] != f; }
   int diagonal(int f) const {
@@ -77,7 +100,7 @@ class QuadCoarsening {
     do {
       if (!is_diagonal(h)) ++edges;
       const int n = mesh_.ccw(h);
-      if (n < 0) return edges + 1 - 3;
+      if (n < 0) return edges - (options_.boundary_quads.empty() ? 2 : options_.boundary_quads[v]);
       h = n;
     } while (h != mesh_.out[v]);
     return edges - 4;
@@ -115,6 +138,7 @@ class QuadCoarsening {
         const int o = mesh_.opposite[h];
         if (o >= 0 && o < h) continue;
         if (o < 0) {
+          if (!options_.boundary_quads.empty()) continue;
           candidates.push_back({index[f], -1, -10.0});
         } else {
           const double b = badness({mesh_.from(h), mesh_.apex(o), mesh_.to(h), mesh_.apex(h)});

@@ -31,7 +31,9 @@ struct QuadLayout {
 struct QuadLayoutOptions {
   double size = 300;         // quads, plus `boundary_side` for each side on the boundary; not exceeded where the topology allows
   double boundary_side = 0;
+  int least = 0;             // coarsening stops before there are fewer quads
   std::uint64_t seed = 1;
+  std::vector<int> boundary_quads;  // per vertex on the boundary: how many quads are to meet there; the boundary stays as it is. Empty: two, and nodes may be added between
 };
 
 // Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until the size asked for is reached.

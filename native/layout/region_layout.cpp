@@ -8,8 +8,12 @@
 #include <numeric>
 #include <queue>
 
+#include <Eigen/SparseCholesky>
+
 #include "base/error.h"
 #include "layout/curve_network.h"
+#include "layout/decimation.h"
+#include "layout/quad_layout.h"
 #include "parameterization/convex_map.h"
 
 namespace hybrid_mesh {
@@ -84,20 +88,21 @@ LayoutEdit chord_edit(const PatchRegion& region, int from) {
   return edit;
 }
 
-std::optional<LayoutEdit> ring_edit(const PatchedSurface& surface, const PatchRegion& region) {
+std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings) {
   const int n = static_cast<int>(region.corners.size());
   if (region.inner_nodes.size() > 1) return std::nullopt;
   LayoutEdit edit;
   edit.patches = region.patches;
   edit.start = region.boundary[0];
-  edit.ring = n;
-  edit.inner_nodes = n + static_cast<int>(region.inner_nodes.size());
-  for (int k = 0; k < n; ++k) edit.quads.push_back({k, (k + 1) % n, n + (k + 1) % n, n + k});
+  edit.rings = rings;
+  edit.inner_nodes = n * rings + static_cast<int>(region.inner_nodes.size());
+  for (int r = 0; r < rings; ++r)
+    for (int k = 0; k < n; ++k) edit.quads.push_back({n * r + k, n * r + (k + 1) % n, n * (r + 1) + (k + 1) % n, n * (r + 1) + k});
   for (const int q : region.patches) {
     std::array<int, 4> quad;
     for (int i = 0; i < 4; ++i) {
       const auto at = std::find(region.corners.begin(), region.corners.end(), surface.nodes[q][i]);
-      quad[i] = at == region.corners.end() ? 2 * n : n + static_cast<int>(at - region.corners.begin());
+      quad[i] = n * rings + (at == region.corners.end() ? n : static_cast<int>(at - region.corners.begin()));
     }
     edit.quads.push_back(quad);
   }
@@ -129,6 +134,126 @@ std::optional<int> irregular_growth(const PatchedSurface& surface, const PatchRe
   return growth;
 }
 
+LayoutChange change_layout(PatchedSurface& layout, const LayoutEdit& edit) {
+  const std::optional<PatchRegion> region = make_region(layout, edit.patches, edit.start);
+  if (!region) throw Error(ErrorCode::Internal, "a region to be laid out anew is no disk");
+  const int n = static_cast<int>(region->corners.size());
+  const int old_count = layout.patch_count(), removed = static_cast<int>(edit.patches.size()), added = static_cast<int>(edit.quads.size());
+  LayoutChange change;
+  std::vector<int> holes = edit.patches;
+  std::sort(holes.begin(), holes.end());
+  change.patch.resize(old_count);
+  std::iota(change.patch.begin(), change.patch.end(), 0);
+  for (int i = 0; i < added; ++i) change.added.push_back(i < removed ? holes[i] : old_count + i - removed);
+  const int count = old_count + added - removed;
+  for (int i = added, last = old_count - 1; i < removed && holes[i] < count; ++i) {
+    while (std::binary_search(holes.begin(), holes.end(), last)) --last;
+    change.patch[last--] = holes[i];
+  }
+  for (const int q : edit.patches) change.patch[q] = -1;
+
+  std::vector<std::array<int, 4>> nodes(count);
+  std::vector<std::array<PatchSide, 4>> neighbours(count);
+  for (int q = 0; q < old_count; ++q) {
+    if (change.patch[q] < 0) continue;
+    nodes[change.patch[q]] = layout.nodes[q];
+    for (int i = 0; i < 4; ++i) {
+      PatchSide other = layout.neighbours[q][i];
+      if (other.patch >= 0) other.patch = change.patch[other.patch];
+      neighbours[change.patch[q]][i] = other;
+    }
+  }
+  std::map<std::pair<int, int>, PatchSide> side_between;
+  for (int k = 0; k < added; ++k)
+    for (int i = 0; i < 4; ++i) side_between[{edit.quads[k][i], edit.quads[k][(i + 1) % 4]}] = {change.added[k], i};
+  for (int k = 0; k < added; ++k)
+    for (int i = 0; i < 4; ++i) {
+      const int a = edit.quads[k][i], b = edit.quads[k][(i + 1) % 4], q = change.added[k];
+      nodes[q][i] = a < n ? region->corners[a] : layout.node_count + a - n;
+      if (a < n && b == (a + 1) % n) {
+        const PatchSide& rim = region->boundary[a];
+        PatchSide other = layout.neighbours[rim.patch][rim.side];
+        if (other.patch >= 0) {
+          other.patch = change.patch[other.patch];
+          neighbours[other.patch][other.side] = {q, i};
+        }
+        neighbours[q][i] = other;
+      } else {
+        const auto other = side_between.find({b, a});
+        if (other == side_between.end()) throw Error(ErrorCode::Internal, "a new quad of a region has a side without a neighbour");
+        neighbours[q][i] = other->second;
+      }
+    }
+  change.node.assign(layout.node_count + edit.inner_nodes, -1);
+  layout.node_count = 0;
+  for (auto& corners : nodes)
+    for (int& x : corners) {
+      if (change.node[x] < 0) change.node[x] = layout.node_count++;
+      x = change.node[x];
+    }
+  layout.nodes = std::move(nodes);
+  layout.neighbours = std::move(neighbours);
+  return change;
+}
+
+LayoutEdit renumbered(LayoutEdit edit, const LayoutChange& change) {
+  for (int& q : edit.patches) q = change.patch[q];
+  edit.start.patch = change.patch[edit.start.patch];
+  return edit;
+}
+
+namespace {
+
+// Lengths of shortest paths along edges from some vertices.
+std::vector<double> distances(const TriangleSurface& mesh, const std::vector<int>& from) {
+  std::vector<std::vector<int>> leaving(mesh.points.size());
+  for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
+    leaving[mesh.from(h)].push_back(mesh.to(h));
+    if (mesh.opposite[h] < 0) leaving[mesh.to(h)].push_back(mesh.from(h));
+  }
+  std::vector<double> distance(mesh.points.size(), 1e300);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  for (const int v : from) queue.push({distance[v] = 0, v});
+  while (!queue.empty()) {
+    const auto [d, v] = queue.top();
+    queue.pop();
+    if (d > distance[v]) continue;
+    for (const int w : leaving[v]) {
+      const double along = d + (mesh.points[w] - mesh.points[v]).norm();
+      if (along < distance[w]) queue.push({distance[w] = along, w});
+    }
+  }
+  return distance;
+}
+
+double length_of(const TriangleSurface& mesh, const std::vector<int>& loop) {
+  double length = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) length += (mesh.points[loop[k]] - mesh.points[loop[(k + 1) % loop.size()]]).norm();
+  return length;
+}
+
+// The region's boundary in a part made of its patches: all vertices along it.
+std::vector<int> rim_of(const PatchedPart& part, const PatchRegion& region) {
+  std::vector<int> rim;
+  for (const PatchSide& s : region.boundary) {
+    const auto patch = std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin();
+    const std::vector<int>& side = part.surface.sides[patch][s.side];
+    rim.insert(rim.end(), side.begin(), side.end() - 1);
+  }
+  return rim;
+}
+
+}  // namespace
+
+int tower_height(const PatchedSurface& surface, const PatchRegion& region) {
+  const PatchedPart part = part_of(surface, region.patches);
+  const std::vector<int> rim = rim_of(part, region);
+  const std::vector<double> depth = distances(part.surface.mesh, rim);
+  const double side = length_of(part.surface.mesh, rim) / static_cast<double>(region.corners.size());
+  return static_cast<int>(std::lround(*std::max_element(depth.begin(), depth.end()) / std::max(side, 1e-300)));
+}
+
 namespace {
 
 // One application of an edit.
@@ -136,18 +261,28 @@ class Relayout {
  public:
   Relayout(MappedSurface& mapped, const LayoutEdit& edit) : mapped_(mapped), edit_(edit) {}
 
-  std::vector<int> run() {
-    std::optional<PatchRegion> region = make_region(mapped_.surface, edit_.patches, edit_.start);
-    if (!region) throw Error(ErrorCode::Internal, "a region to be laid out anew is no disk");
-    region_ = std::move(*region);
-    part_ = part_of(mapped_.surface, edit_.patches);
+  LayoutChange run() {
+    take_region();
     embed();
     place_nodes();
     cut();
     return merge();
   }
 
+  LayoutChange run(PatchedSurface piece) {
+    take_region();
+    piece_ = std::move(piece);
+    return merge();
+  }
+
  private:
+  void take_region() {
+    std::optional<PatchRegion> region = make_region(mapped_.surface, edit_.patches, edit_.start);
+    if (!region) throw Error(ErrorCode::Internal, "a region to be laid out anew is no disk");
+    region_ = std::move(*region);
+    part_ = part_of(mapped_.surface, edit_.patches);
+  }
+
   TriangleSurface& disk() { return part_.surface.mesh; }
   int local_patch(int q) const { return static_cast<int>(std::find(edit_.patches.begin(), edit_.patches.end(), q) - edit_.patches.begin()); }
 
@@ -163,7 +298,7 @@ class Relayout {
       corner_vertex_.push_back(sides.back().points.front());
     }
     polygon_ = polygon;
-    for (const DiskSide& side : sides) rim_.insert(rim_.end(), side.points.begin(), side.points.end() - 1);
+    rim_ = rim_of(part_, region_);
     ConvexMap convex_map(disk());
     std::vector<int> faces;
     for (;;) {
@@ -181,30 +316,6 @@ class Relayout {
       for (int i = 0; i < 3; ++i) uv_[disk().faces[f][i]] = corners[f][i];
   }
 
-  // Lengths of shortest paths along edges to the region's boundary.
-  std::vector<double> depths() {
-    const TriangleSurface& mesh = disk();
-    std::vector<std::vector<int>> leaving(mesh.points.size());
-    for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
-      leaving[mesh.from(h)].push_back(mesh.to(h));
-      if (mesh.opposite[h] < 0) leaving[mesh.to(h)].push_back(mesh.from(h));
-    }
-    std::vector<double> depth(mesh.points.size(), 1e300);
-    using Entry = std::pair<double, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-    for (const int v : rim_) queue.push({depth[v] = 0, v});
-    while (!queue.empty()) {
-      const auto [d, v] = queue.top();
-      queue.pop();
-      if (d > depth[v]) continue;
-      for (const int w : leaving[v]) {
-        const double along = d + (mesh.points[w] - mesh.points[v]).norm();
-        if (along < depth[w]) queue.push({depth[w] = along, w});
-      }
-    }
-    return depth;
-  }
-
   // Where a point lies between a centre (0) and the polygon's rim (1).
   double gauge(const Vec2& p, const Vec2& centre) const {
     double most = 0;
@@ -217,28 +328,75 @@ class Relayout {
     return most;
   }
 
-  void place_nodes() {
-    Vec2 centre(0, 0);
-    double shrink = 0.5;
-    if (edit_.ring > 0) {
-      const std::vector<double> depth = depths();
-      const std::size_t tip = std::max_element(depth.begin(), depth.end()) - depth.begin();
-      // The tip itself may be next to the rim in the plane: the rings keep some room.
-      centre = 0.9 * uv_[tip];
-      double perimeter = 0;
-      for (std::size_t k = 0; k < rim_.size(); ++k) perimeter += (disk().points[rim_[k]] - disk().points[rim_[(k + 1) % rim_.size()]]).norm();
-      const double side = perimeter / edit_.ring;
-      // As far from the tip as a square's sides are from its middle, or half-way where that is not so deep.
-      const double wanted = std::max(0.45 * depth[tip], depth[tip] - 0.6 * side);
+  // Where the tower's rings lie, as gauges: equally high above the region's boundary.
+  std::vector<double> ring_gauges(Vec2& centre) {
+    const std::vector<double> depth = distances(disk(), rim_);
+    const std::size_t tip = std::max_element(depth.begin(), depth.end()) - depth.begin();
+    // The tip itself may be next to the rim in the plane: the rings keep some room.
+    centre = 0.9 * uv_[tip];
+    const double side = length_of(disk(), rim_) / static_cast<double>(polygon_.size());
+    // The last one as far from the tip as a square's sides are from its middle, or at the height that leaves as much above it as is between two, less a little.
+    const double rings = edit_.rings;
+    const double last = std::max((rings - 0.1) / (rings + 1) * depth[tip], depth[tip] - 0.6 * side);
+    std::vector<double> gauges;
+    double outer = 1;
+    for (int r = 0; r < edit_.rings; ++r) {
+      const double wanted = last * (r + 1) / rings, width = 0.2 * last / rings;
       std::vector<double> at;
       for (std::size_t v = 0; v < depth.size(); ++v)
-        if (depth[v] > 0.8 * wanted && depth[v] < 1.2 * wanted) at.push_back(gauge(uv_[v], centre));
+        if (std::abs(depth[v] - wanted) < width) at.push_back(gauge(uv_[v], centre));
+      double shrink = 0.5 * outer;
       if (!at.empty()) {
         std::nth_element(at.begin(), at.begin() + at.size() / 2, at.end());
-        shrink = std::clamp(at[at.size() / 2], 0.02, 0.9);
+        shrink = std::clamp(at[at.size() / 2], 0.02 * outer, 0.9 * outer);
+      }
+      gauges.push_back(outer = shrink);
+    }
+    return gauges;
+  }
+
+  // Tutte's embedding of the new quads' sides: every quad is convex.
+  std::vector<Vec2> drawn_nodes() const {
+    const int n = static_cast<int>(polygon_.size()), all = n + edit_.inner_nodes;
+    std::vector<std::vector<int>> beside(all);
+    for (const auto& quad : edit_.quads)
+      for (int i = 0; i < 4; ++i)
+        if (quad[i] >= n) {
+          beside[quad[i]].push_back(quad[(i + 1) % 4]);
+          beside[quad[i]].push_back(quad[(i + 3) % 4]);
+        }
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(edit_.inner_nodes, 2);
+    for (int k = n; k < all; ++k) {
+      entries.emplace_back(k - n, k - n, static_cast<double>(beside[k].size()));
+      for (const int w : beside[k]) {
+        if (w >= n)
+          entries.emplace_back(k - n, w - n, -1.0);
+        else
+          right.row(k - n) += polygon_[w].transpose();
       }
     }
-    for (int k = 0; k < edit_.inner_nodes; ++k) inner_vertex_.push_back(insert(k < edit_.ring ? Vec2(centre + shrink * (polygon_[k] - centre)) : centre));
+    Eigen::SparseMatrix<double> matrix(edit_.inner_nodes, edit_.inner_nodes);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+    const Eigen::MatrixXd at = solver.solve(right);
+    std::vector<Vec2> nodes = polygon_;
+    for (int k = 0; k < edit_.inner_nodes; ++k) nodes.push_back(at.row(k).transpose());
+    return nodes;
+  }
+
+  void place_nodes() {
+    const int n = static_cast<int>(polygon_.size());
+    std::vector<Vec2> inner;
+    if (edit_.rings > 0) {
+      Vec2 centre(0, 0);
+      const std::vector<double> gauges = ring_gauges(centre);
+      for (int k = 0; k < edit_.inner_nodes; ++k) inner.push_back(k < n * edit_.rings ? Vec2(centre + gauges[k / n] * (polygon_[k % n] - centre)) : centre);
+    } else if (edit_.inner_nodes > 0) {
+      const std::vector<Vec2> nodes = drawn_nodes();
+      inner.assign(nodes.begin() + n, nodes.end());
+    }
+    for (const Vec2& p : inner) inner_vertex_.push_back(insert(p));
     connect_half_edges(disk());
   }
 
@@ -295,23 +453,13 @@ class Relayout {
     piece_ = cut_along_segments(disk(), uv_, layout);
   }
 
-  std::vector<int> merge() {
-    const int n = static_cast<int>(region_.corners.size());
+  LayoutChange merge() {
     PatchedSurface& whole = mapped_.surface;
-    const int old_count = whole.patch_count(), removed = static_cast<int>(edit_.patches.size()), added = static_cast<int>(edit_.quads.size());
-    // The new quads take the numbers of the old ones, then further ones; holes are filled with the last patches.
-    std::vector<int> holes = edit_.patches;
-    std::sort(holes.begin(), holes.end());
-    std::vector<int> number(added), renumbered(old_count);
-    std::iota(renumbered.begin(), renumbered.end(), 0);
-    for (int i = 0; i < added; ++i) number[i] = i < removed ? holes[i] : old_count + i - removed;
-    const int count = old_count + added - removed;
-    for (int i = added, last = old_count - 1; i < removed && holes[i] < count; ++i) {
-      while (std::find(holes.begin(), holes.end(), last) != holes.end()) --last;
-      renumbered[last--] = holes[i];
-    }
-
     PatchedSurface out;
+    out.nodes = whole.nodes;
+    out.neighbours = whole.neighbours;
+    out.node_count = whole.node_count;
+    LayoutChange change = change_layout(out, edit_);
     TriangleSurface& mesh = out.mesh;
     mesh.points = std::move(whole.mesh.points);
     out.source = std::move(whole.source);
@@ -329,70 +477,30 @@ class Relayout {
       out.source.push_back(combine(of, piece_.source[v].weights));
     }
     std::vector<std::array<Vec2, 3>> corners;
-    const std::vector<char> in_region = [&] {
-      std::vector<char> in(old_count, 0);
-      for (const int q : edit_.patches) in[q] = 1;
-      return in;
-    }();
     for (std::size_t f = 0; f < whole.mesh.faces.size(); ++f) {
-      if (in_region[whole.patch[f]]) continue;
+      if (change.patch[whole.patch[f]] < 0) continue;
       mesh.faces.push_back(whole.mesh.faces[f]);
       mesh.source_face.push_back(whole.mesh.source_face[f]);
-      out.patch.push_back(renumbered[whole.patch[f]]);
+      out.patch.push_back(change.patch[whole.patch[f]]);
       corners.push_back(mapped_.corners[f]);
     }
     for (std::size_t f = 0; f < piece_.mesh.faces.size(); ++f) {
       const std::array<int, 3>& c = piece_.mesh.faces[f];
       mesh.faces.push_back({point[c[0]], point[c[1]], point[c[2]]});
       mesh.source_face.push_back(disk().source_face[piece_.mesh.source_face[f]]);
-      out.patch.push_back(number[piece_.patch[f]]);
+      out.patch.push_back(change.added[piece_.patch[f]]);
       corners.push_back({Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)});
     }
     connect_half_edges(mesh);
-
-    out.nodes.resize(count);
-    out.neighbours.resize(count);
-    out.sides.resize(count);
-    for (int q = 0; q < old_count; ++q) {
-      if (in_region[q]) continue;
-      out.nodes[renumbered[q]] = whole.nodes[q];
-      out.sides[renumbered[q]] = std::move(whole.sides[q]);
-      for (int i = 0; i < 4; ++i) {
-        PatchSide other = whole.neighbours[q][i];
-        if (other.patch >= 0) other.patch = renumbered[other.patch];
-        out.neighbours[renumbered[q]][i] = other;
-      }
-    }
-    for (int k = 0; k < added; ++k) {
-      for (int i = 0; i < 4; ++i) {
-        const int a = edit_.quads[k][i], b = edit_.quads[k][(i + 1) % 4];
-        out.nodes[number[k]][i] = a < n ? region_.corners[a] : whole.node_count + a - n;
-        std::vector<int>& side = out.sides[number[k]][i];
-        for (const int v : piece_.sides[k][i]) side.push_back(point[v]);
-        if (a < n && b == (a + 1) % n) {
-          const PatchSide& rim = region_.boundary[a];
-          PatchSide other = whole.neighbours[rim.patch][rim.side];
-          if (other.patch >= 0) {
-            other.patch = renumbered[other.patch];
-            out.neighbours[other.patch][other.side] = {number[k], i};
-          }
-          out.neighbours[number[k]][i] = other;
-        } else {
-          const PatchSide other = piece_.neighbours[k][i];
-          out.neighbours[number[k]][i] = {number[other.patch], other.side};
-        }
-      }
-    }
-    // Nodes densely, in the order of their first use.
-    std::vector<int> node(whole.node_count + edit_.inner_nodes, -1);
-    for (auto& nodes : out.nodes)
-      for (int& x : nodes) {
-        if (node[x] < 0) node[x] = out.node_count++;
-        x = node[x];
-      }
-    mapped_.surface = std::move(out);
+    out.sides.resize(out.nodes.size());
+    for (std::size_t q = 0; q < change.patch.size(); ++q)
+      if (change.patch[q] >= 0) out.sides[change.patch[q]] = std::move(whole.sides[q]);
+    for (std::size_t k = 0; k < change.added.size(); ++k)
+      for (int i = 0; i < 4; ++i)
+        for (const int v : piece_.sides[k][i]) out.sides[change.added[k]][i].push_back(point[v]);
+    whole = std::move(out);
     mapped_.corners = std::move(corners);
-    return number;
+    return change;
   }
 
   MappedSurface& mapped_;
@@ -406,6 +514,75 @@ class Relayout {
 
 }  // namespace
 
-std::vector<int> apply_edit(MappedSurface& mapped, const LayoutEdit& edit) { return Relayout(mapped, edit).run(); }
+LayoutChange apply_edit(MappedSurface& mapped, const LayoutEdit& edit) { return Relayout(mapped, edit).run(); }
+
+LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit drawn) { return Relayout(mapped, drawn.edit).run(std::move(drawn.piece)); }
+
+std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed, const Progress& progress) {
+  const PatchedPart part = part_of(surface, region.patches);
+  const TriangleSurface& disk = part.surface.mesh;
+  const int n = static_cast<int>(region.corners.size());
+  const std::vector<int> valence = node_valences(surface);
+  const std::vector<char> on_boundary = boundary_nodes(surface);
+  std::vector<int> corner_of(disk.points.size(), -1);
+  DecimationOptions decimation;
+  decimation.seed = seed;
+  decimation.fixed.assign(disk.points.size(), 0);
+  QuadLayoutOptions options;
+  options.size = quads;
+  options.seed = seed;
+  options.boundary_quads.assign(disk.points.size(), 2);
+  for (int k = 0; k < n; ++k) {
+    const PatchSide& s = region.boundary[k];
+    const int local = static_cast<int>(std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin());
+    const int v = part.surface.sides[local][s.side].front();
+    corner_of[v] = k;
+    decimation.fixed[v] = 1;
+    int inside = 0;
+    for (const int q : region.patches) inside += static_cast<int>(std::count(surface.nodes[q].begin(), surface.nodes[q].end(), region.corners[k]));
+    options.boundary_quads[v] = std::max(1, (on_boundary[region.corners[k]] ? 2 : 4) - (valence[region.corners[k]] - inside));
+  }
+  decimation.target_faces = std::max(n - 2, static_cast<int>(2.6 * quads));
+  EditMesh mesh(disk);
+  std::vector<MeshEdit> log;
+  QuadLayout layout;
+  try {
+    std::vector<VertexQuadric> quadrics = decimate(mesh, disk.points, decimation, log, progress);
+    for (std::size_t v = 0; v < corner_of.size(); ++v)
+      if (mesh.vertex_alive(static_cast<int>(v)) && mesh.is_boundary(static_cast<int>(v)) && corner_of[v] < 0) return std::nullopt;
+    layout = make_quad_layout(mesh, disk.points, std::move(quadrics), options, log, progress);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::Internal) throw;
+    return std::nullopt;
+  }
+  DrawnEdit out;
+  out.edit.patches = region.patches;
+  out.edit.start = region.boundary[0];
+  std::vector<int> number(layout.node_vertex.size());
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    const int corner = corner_of[layout.node_vertex[k]];
+    number[k] = corner >= 0 ? corner : n + out.edit.inner_nodes++;
+  }
+  // No two nodes may be joined twice, not even by a side within the region and one outside.
+  std::map<std::pair<int, int>, int> joined;
+  std::vector<int> corner_of_node(surface.node_count, -1);
+  for (int k = 0; k < n; ++k) corner_of_node[region.corners[k]] = k;
+  for (int q = 0; q < surface.patch_count(); ++q) {
+    if (std::find(region.patches.begin(), region.patches.end(), q) != region.patches.end()) continue;
+    for (int i = 0; i < 4; ++i) {
+      const int a = corner_of_node[surface.nodes[q][i]], b = corner_of_node[surface.nodes[q][(i + 1) % 4]];
+      if (a >= 0 && b >= 0 && a != (b + 1) % n) joined[{a, b}] = 1, joined[{b, a}] = 1;
+    }
+  }
+  for (const QuadLayout::Quad& quad : layout.quads) {
+    std::array<int, 4> nodes;
+    for (int i = 0; i < 4; ++i) nodes[i] = number[quad.nodes[i]];
+    for (int i = 0; i < 4; ++i)
+      if (nodes[i] == nodes[(i + 2) % 4] || ++joined[{nodes[i], nodes[(i + 1) % 4]}] > 1) return std::nullopt;
+    out.edit.quads.push_back(nodes);
+  }
+  out.piece = cut_along_layout(disk, mesh, log, layout, progress);
+  return out;
+}
 
 }  // namespace hybrid_mesh

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "base/context.h"
 #include "parameterization/patch_gluing.h"
 
 namespace hybrid_mesh {
@@ -26,8 +28,8 @@ struct LayoutEdit {
   std::vector<int> patches;
   PatchSide start;                         // the boundary side that begins at corner 0
   std::vector<std::array<int, 4>> quads;   // nodes, counter-clockwise: 0 .. n - 1 the region's corners, n .. the new ones
-  int ring = 0;                            // 0, or n: the first new nodes form a ring inside the boundary, node n + k facing corner k
-  int inner_nodes = 0;                     // new nodes, those of the ring included
+  int rings = 0;                           // the first new nodes form so many rings inside the boundary, outermost first, node n r + k facing corner k in the r-th
+  int inner_nodes = 0;                     // new nodes, those of the rings included
 
   int growth() const { return static_cast<int>(quads.size()) - static_cast<int>(patches.size()); }
 };
@@ -36,8 +38,18 @@ struct LayoutEdit {
 LayoutEdit star_edit(const PatchRegion& region, int parity);
 // Two quads instead of two: the side between them joins corners `from` and `from` + 3 of six.
 LayoutEdit chord_edit(const PatchRegion& region, int from);
-// The region's quads shrunk, with a ring of quads around them: skin for a feature that sticks out of the region. One quad, two neighbours, or the quads around a node.
-std::optional<LayoutEdit> ring_edit(const PatchedSurface& surface, const PatchRegion& region);
+// A cube tower: the region's quads shrunk, with rings of quads around them: skin for a feature that sticks out of the region. One quad, two neighbours, or the quads around a node.
+std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings);
+// The number of rings that makes a tower's quads about square: the depth of the region, from its boundary to the point farthest from it, over the mean length of its boundary sides.
+int tower_height(const PatchedSurface& surface, const PatchRegion& region);
+
+// A new layout for a region and where its sides lie.
+struct DrawnEdit {
+  LayoutEdit edit;
+  PatchedSurface piece;  // the region cut along the new quads' sides
+};
+// New quads of even size that follow the region's shape, found by decimating it; about `quads`. Nothing if there are none that keep its boundary.
+std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed, const Progress& progress);
 
 // By how many inner nodes with other than four quads would the edit raise their number? Nothing if it changed an inner node to fewer than 3 or more than 6 quads, or a boundary
 // node to more than 4. `valence` and `on_boundary`: of the surface's nodes.
@@ -46,9 +58,20 @@ std::optional<int> irregular_growth(const PatchedSurface& surface, const PatchRe
 std::vector<int> node_valences(const PatchedSurface& surface);
 std::vector<char> boundary_nodes(const PatchedSurface& surface);
 
+// What an edit does to the numbers of patches and nodes; a removed one has -1.
+struct LayoutChange {
+  std::vector<int> added;        // per new quad: its patch
+  std::vector<int> patch, node;  // per old one: its new number. New inner nodes follow the old nodes
+};
+// Applies an edit to the nodes and neighbours alone. The new quads take the numbers of the old ones, then further ones; holes are filled with the last patches; nodes are numbered
+// densely in the order of their first use: all depends on the layout alone. Throws Error{Internal} if the region is no disk.
+LayoutChange change_layout(PatchedSurface& layout, const LayoutEdit& edit);
+// An edit of other patches that was found before `change`.
+LayoutEdit renumbered(LayoutEdit edit, const LayoutChange& change);
+
 // Applies an edit: the region is mapped to a convex polygon, the new quads are drawn in it with straight sides, and the surface is cut along them. The quads' maps are left to
-// map_patches: their patches are returned, and `mapped.corners` has entries for all faces. Patches are renumbered densely; which number a quad gets depends on the layout alone.
-// Throws Error{Internal} if the region's map degenerates.
-std::vector<int> apply_edit(MappedSurface& mapped, const LayoutEdit& edit);
+// map_patches, and `mapped.corners` has entries for all faces. Throws Error{Internal} if the region's map degenerates.
+LayoutChange apply_edit(MappedSurface& mapped, const LayoutEdit& edit);
+LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit edit);
 
 }  // namespace hybrid_mesh

@@ -2,6 +2,7 @@
 #include "parameterization/chart_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 
 #include "base/error.h"
@@ -126,7 +127,43 @@ ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const s
     }
 }
 
-FlatTriangle ChartMesh::flat(int f) const { return flatten(points[mesh.origin[3 * f]], points[mesh.origin[3 * f + 1]], points[mesh.origin[3 * f + 2]], scale); }
+void ChartMesh::quadrisect() {
+  const int faces = static_cast<int>(chart.size());
+  // Of each face the quadrant of its square that holds it best: its chart's origin in the doubled square.
+  std::vector<Complex> origin(faces, Complex(0, 0));
+  for (int f = 0; f < faces; ++f) {
+    if (!mesh.alive[f]) continue;
+    const Complex middle = (at(3 * f) + at(3 * f + 1) + at(3 * f + 2)) / 3.0;
+    const int right = middle.real() >= 0.5, upper = middle.imag() >= 0.5;
+    origin[f] = Complex(right, upper);
+    chart[f] = 4 * chart[f] + (upper ? 3 - right : right);
+  }
+  const auto doubled = [](const Transition& t, const Complex& shift) {
+    return Transition{t.turns, 2 * t.x + static_cast<std::int32_t>(shift.real()), 2 * t.y + static_cast<std::int32_t>(shift.imag())};
+  };
+  for (int h = 0; h < 3 * faces; ++h) {
+    if (!mesh.alive[h / 3]) continue;
+    const int across = mesh.opposite[h] < 0 ? h / 3 : mesh.opposite[h] / 3;
+    gluing[h] = doubled(gluing[h], gluing[h].rotate(origin[h / 3]) - origin[across]);
+    corner[h] = doubled(corner[h], -origin[h / 3]);
+  }
+  for (Complex& p : uv) p *= 2;
+  scale *= 2;
+}
+
+const FlatTriangle& ChartMesh::flat(int f) const {
+  if (flat_.size() != chart.size()) flat_.resize(chart.size());
+  Flat& known = flat_[f];
+  const std::array<int, 3> corners{mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]};
+  if (known.corners != corners || known.scale != scale) known = {corners, scale, flatten(points[corners[0]], points[corners[1]], points[corners[2]], scale)};
+  return known.triangle;
+}
+
+void ChartMesh::move_point(int v, const Vec3& place) {
+  points[v] = place;
+  for (int f = 0; f < static_cast<int>(flat_.size()); ++f)
+    if (std::find(flat_[f].corners.begin(), flat_[f].corners.end(), v) != flat_[f].corners.end()) flat_[f].corners = {-1, -1, -1};
+}
 
 double ChartMesh::determinant(int f) const {
   const Complex a = at(3 * f), b = at(3 * f + 1), c = at(3 * f + 2);

@@ -41,6 +41,7 @@ class ChartMesh {
  public:
   enum class Kind : std::uint8_t { Free, SlideU, SlideV, Pinned, Cone };  // Slide: a boundary vertex that keeps its other coordinate
 
+  ChartMesh() = default;
   // From patches mapped to unit squares, (u, v) a face's corner.
   ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners);
 
@@ -48,9 +49,13 @@ class ChartMesh {
   // of `charts` that is alive its vertex there. What was collapsed comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
   ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area, const std::vector<int>& vertex_of);
 
+  // The charts of the patches' quadrants, in the order of quadrisected(): all coordinates are doubled.
+  void quadrisect();
+
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
-  FlatTriangle flat(int f) const;
+  const FlatTriangle& flat(int f) const;  // remembered until the face or the scale changes
+  void move_point(int v, const Vec3& place);  // on the surface
   double determinant(int f) const;  // of the map from the flattened triangle
   double angle_at(int v) const;     // sum of the triangles' angles in the charts
 
@@ -70,7 +75,7 @@ class ChartMesh {
   }
 
   EditMesh mesh;
-  std::vector<Vec3> points;
+  std::vector<Vec3> points;         // changed by move_point() alone
   std::vector<Complex> uv;          // per vertex, in its own frame
   std::vector<Kind> kind;           // per vertex
   std::vector<int> chart;           // per face: the patch whose square its chart continues
@@ -80,6 +85,13 @@ class ChartMesh {
 
  private:
   bool place(int v);
+
+  struct Flat {
+    std::array<int, 3> corners{-1, -1, -1};
+    double scale = 0;
+    FlatTriangle triangle;
+  };
+  mutable std::vector<Flat> flat_;  // per face
 };
 
 }  // namespace hybrid_mesh

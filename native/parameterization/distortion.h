@@ -66,29 +66,53 @@ struct Distortion {
   }
 };
 
-// The Hessian of a density with respect to (f_z, f_zbar) as four reals, its negative eigenvalues removed.
-inline Eigen::Matrix4d projected_hessian(const Distortion::Derivatives& e, const Complex& a, const Complex& b) {
-  const double s = std::norm(a), t = std::norm(b), ra = std::sqrt(s), rb = std::sqrt(t);
-  const Eigen::Vector2d ua = ra > 0 ? Eigen::Vector2d(a.real() / ra, a.imag() / ra) : Eigen::Vector2d(1, 0);
-  const Eigen::Vector2d ub = rb > 0 ? Eigen::Vector2d(b.real() / rb, b.imag() / rb) : Eigen::Vector2d(1, 0);
-  Eigen::Matrix4d h = Eigen::Matrix4d::Zero();
-  const Eigen::Vector2d ta(-ua.y(), ua.x()), tb(-ub.y(), ub.x());
-  h.topLeftCorner<2, 2>() += std::max(0.0, 2 * e.s) * ta * ta.transpose();
-  h.bottomRightCorner<2, 2>() += std::max(0.0, 2 * e.t) * tb * tb.transpose();
-  const double p = 2 * e.s + 4 * s * e.ss, q = 4 * ra * rb * e.st, r = 2 * e.t + 4 * t * e.tt;
-  const double mean = 0.5 * (p + r), spread = std::hypot(0.5 * (p - r), q);
-  for (const double sign : {-1.0, 1.0}) {
-    const double lambda = mean + sign * spread;
-    if (lambda <= 0) continue;
-    Eigen::Vector2d v = std::abs(q) > 0 ? Eigen::Vector2d(q, lambda - p) : ((p >= r) == (sign > 0) ? Eigen::Vector2d(1, 0) : Eigen::Vector2d(0, 1));
-    const double n = v.norm();
-    if (!(n > 0)) continue;
-    v /= n;
-    Eigen::Vector4d w;
-    w << v.x() * ua, v.y() * ub;
-    h += lambda * w * w.transpose();
+// The Hessian of a density with respect to (f_z, f_zbar) = (a, b): 2 Psi_s and 2 Psi_t across a and b, and a block in the plane of their directions. Its negative eigenvalues are removed.
+struct ProjectedHessian {
+  Complex ua{1, 0}, ub{1, 0};  // directions of a and b
+  double across_a, across_b, aa, ab, bb;
+
+  ProjectedHessian(const Distortion::Derivatives& e, const Complex& a, const Complex& b) {
+    const double s = std::norm(a), t = std::norm(b), ra = std::sqrt(s), rb = std::sqrt(t);
+    if (ra > 0) ua = a / ra;
+    if (rb > 0) ub = b / rb;
+    across_a = std::max(0.0, 2 * e.s);
+    across_b = std::max(0.0, 2 * e.t);
+    const double p = 2 * e.s + 4 * s * e.ss, q = 4 * ra * rb * e.st, r = 2 * e.t + 4 * t * e.tt;
+    const double mean = 0.5 * (p + r), spread = std::hypot(0.5 * (p - r), q);
+    if (mean - spread >= 0) {
+      aa = p, ab = q, bb = r;
+    } else if (mean + spread <= 0) {
+      aa = ab = bb = 0;
+    } else {
+      // The positive eigenvalue's part: with M the block and l the other eigenvalue, (M - l) scaled.
+      const double scale = (mean + spread) / (2 * spread);
+      const double low = mean - spread;
+      aa = scale * (p - low), ab = scale * q, bb = scale * (r - low);
+    }
   }
-  return h;
-}
+
+  // As a matrix of four reals.
+  Eigen::Matrix4d matrix() const {
+    const Eigen::Vector2d va(ua.real(), ua.imag()), vb(ub.real(), ub.imag()), na(-va.y(), va.x()), nb(-vb.y(), vb.x());
+    Eigen::Matrix4d h;
+    h.topLeftCorner<2, 2>() = across_a * na * na.transpose() + aa * va * va.transpose();
+    h.topRightCorner<2, 2>() = ab * va * vb.transpose();
+    h.bottomLeftCorner<2, 2>() = h.topRightCorner<2, 2>().transpose();
+    h.bottomRightCorner<2, 2>() = across_b * nb * nb.transpose() + bb * vb * vb.transpose();
+    return h;
+  }
+
+  // With respect to z where a changes by x z and b by conj(x) z.
+  Eigen::Matrix2d along(const Complex& x) const {
+    const Complex p = std::conj(x) * ua, q = x * ub;
+    const Eigen::Vector2d v(p.real(), p.imag()), w(q.real(), q.imag());
+    const double xx = across_a * v.y() * v.y() + across_b * w.y() * w.y() + aa * v.x() * v.x() + 2 * ab * v.x() * w.x() + bb * w.x() * w.x();
+    const double yy = across_a * v.x() * v.x() + across_b * w.x() * w.x() + aa * v.y() * v.y() + 2 * ab * v.y() * w.y() + bb * w.y() * w.y();
+    const double xy = -across_a * v.x() * v.y() - across_b * w.x() * w.y() + aa * v.x() * v.y() + ab * (v.x() * w.y() + v.y() * w.x()) + bb * w.x() * w.y();
+    Eigen::Matrix2d h;
+    h << xx, xy, xy, yy;
+    return h;
+  }
+};
 
 }  // namespace hybrid_mesh

@@ -198,7 +198,7 @@ class MapSmoothing {
       for (int rings = 0; rings < 3; ++rings) {
         if (rings > 0) grow(region, 1);
         if (!stars_.unfold(region)) continue;
-        c_.points[cone] = c_.points[w];
+        c_.move_point(cone, c_.points[w]);
         source_[cone] = source_[w];
         original_[cone] = 1;
         return;
@@ -219,7 +219,7 @@ class MapSmoothing {
       progress.check();
       std::vector<int> left;
       for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-        if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v)) left.push_back(v);
+        if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v, pass)) left.push_back(v);
       if (left.empty()) return;
       for (const int v : left) {
         std::vector<int> region{v};
@@ -249,7 +249,7 @@ class MapSmoothing {
     }
   }
 
-  bool unfolds_when_merged(int v) {
+  bool unfolds_when_merged(int v, int pass) {
     std::vector<std::pair<double, int>> halves;
     int h = c_.mesh.out[v];
     do {
@@ -268,9 +268,10 @@ class MapSmoothing {
       const Complex place = c_.corner[seen_from].back(c_.at(half));
       const bool known = c_.kind[c_.mesh.origin[seen_from]] != ChartMesh::Kind::Cone;
       c_.collapse(half);
-      for (int rings = 0; rings < 3; ++rings) {
+      // More room and patience with those that resist.
+      for (int rings = 0; rings < (pass < 3 ? 3 : 6); ++rings) {
         if (rings > 0) grow(region, 1);
-        if (stars_.unfold(region)) return true;
+        if (stars_.unfold(region, pass < 3 ? 24 : 120)) return true;
       }
       c_.uv = before;
       const bool placed = c_.undo_collapse(half);
@@ -409,6 +410,16 @@ class MapSmoothing {
           placed = c_.undo_collapse(h);
           if (!evicted) break;
         }
+        // Where its ring has no kernel, the ring is given the chance to become rounder first.
+        for (int tries = 0; tries < 3 && !placed && !unfolds_around(v, 2, 24); ++tries) {
+          c_.collapse(h);
+          std::vector<int> region{kept};
+          grow(region, 2 + tries);
+          for (int sweep = 0; sweep < 10; ++sweep)
+            for (const int w : region)
+              if (c_.movable(w)) stars_.relax(w, true);
+          placed = c_.undo_collapse(h);
+        }
         if (!placed) {
           ++report_.unplaced;
           untangle(v);
@@ -444,10 +455,14 @@ class MapSmoothing {
   }
 
   // The star of v has no kernel: its neighbours are moved until it has one.
-  void untangle(int v) {
+  bool unfolds_around(int v, int rings, int sweeps) {
     std::vector<int> region{v};
-    grow(region, 2);
-    if (stars_.unfold(region)) return;
+    grow(region, rings);
+    return stars_.unfold(region, sweeps);
+  }
+  void untangle(int v) {
+    for (int rings = 2; rings < 7; ++rings)
+      if (unfolds_around(v, rings, rings < 4 ? 24 : 150)) return;
     throw Error(ErrorCode::Internal, "the map could not be carried to a finer mesh");
   }
 
@@ -501,7 +516,7 @@ class MapSmoothing {
         Eigen::Vector4d g4;
         g4 << 2 * e.s * a.real(), 2 * e.s * a.imag(), 2 * e.t * b.real(), 2 * e.t * b.imag();
         const Eigen::Matrix<double, 6, 1> g = t.area * (j.transpose() * g4);
-        const Eigen::Matrix<double, 6, 6> hessian = t.area * (j.transpose() * projected_hessian(e, a, b) * j);
+        const Eigen::Matrix<double, 6, 6> hessian = t.area * (j.transpose() * ProjectedHessian(e, a, b).matrix() * j);
         for (int p = 0; p < 6; ++p) {
           if (at[p] < 0) continue;
           gradient[at[p]] += g[p];

@@ -50,6 +50,10 @@ struct PatchedSurface {
   int patch_count() const { return static_cast<int>(nodes.size()); }
 };
 
+// The layout of the patches' quadrants: patch q becomes 4 q .. 4 q + 3, the quadrants (0, 0), (1, 0), (1, 1), (0, 1) of its square, and keeps its nodes' names. Points and faces are
+// left as they are, `patch` and `sides` empty: the surface is cut anew where a map says (ChartMesh::quadrisect(), extract_patch_maps()).
+PatchedSurface quadrisected(PatchedSurface surface);
+
 // A part of a patched surface made of some of its patches. Patches are numbered in the order given; points and nodes where the part merely touches itself are doubled.
 struct PatchedPart {
   PatchedSurface surface;

@@ -32,7 +32,9 @@ double StarRelaxation::triangle_energy(const FlatTriangle& t, const Complex& p0,
 void StarRelaxation::gather(int v) {
   star_.clear();
   c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
-    star_.push_back({a, b, flatten(c_.points[v], c_.points[c_.mesh.to(g)], c_.points[c_.mesh.apex(g)], c_.scale)});
+    const FlatTriangle& t = c_.flat(g / 3);
+    const int i = g % 3, j = (i + 1) % 3, k = (i + 2) % 3;
+    star_.push_back({a, b, {{t.alpha[i], t.alpha[j], t.alpha[k]}, t.area}});
   });
 }
 
@@ -55,9 +57,7 @@ StarRelaxation::Quadratic StarRelaxation::expand(const Complex& p, const Density
     q.energy += s.t.area * e.value;
     const Complex g = 2 * e.s * a * std::conj(x) + 2 * e.t * b * x;
     q.gradient += s.t.area * Eigen::Vector2d(g.real(), g.imag());
-    Eigen::Matrix<double, 4, 2> j;
-    j << x.real(), -x.imag(), x.imag(), x.real(), x.real(), x.imag(), -x.imag(), x.real();
-    q.hessian += s.t.area * (j.transpose() * projected_hessian(e, a, b) * j);
+    q.hessian += s.t.area * ProjectedHessian(e, a, b).along(x);
   }
   return q;
 }
@@ -137,13 +137,14 @@ bool StarRelaxation::is_unfolded(const std::vector<int>& vertices) const {
   return true;
 }
 
-bool StarRelaxation::unfold(const std::vector<int>& vertices) {
+bool StarRelaxation::unfold(const std::vector<int>& vertices, int sweeps) {
   double eps = 0.3;
-  for (int sweep = 0; sweep < 24; ++sweep) {
+  const double shrink = std::pow(1.7e-5, 1.0 / sweeps);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
     if (is_unfolded(vertices)) return true;
     for (const int v : vertices)
       if (c_.movable(v)) relax_folded(v, eps);
-    if (sweep % 2 == 1) eps *= 0.4;
+    eps *= shrink;
   }
   return is_unfolded(vertices);
 }

@@ -21,8 +21,8 @@ class StarRelaxation {
   void relax_folded(int v, double eps);
   // Every face counter-clockwise and no vertex but a cone wound around more than once.
   bool is_unfolded(const std::vector<int>& vertices) const;
-  // Unfolds the stars of the given vertices by moving those of them that can move. Returns whether it did.
-  bool unfold(const std::vector<int>& vertices);
+  // Unfolds the stars of the given vertices by moving those of them that can move, in at most so many sweeps. Returns whether it did.
+  bool unfold(const std::vector<int>& vertices, int sweeps = 24);
 
  private:
   struct Spoke {

@@ -16,6 +16,7 @@
 #include "layout/base_map.h"
 #include "parameterization/patch_extraction.h"
 #include "remesh/adaptive_refinement.h"
+#include "remesh/layout_hierarchy.h"
 #include "remesh/quality.h"
 #include "remesh/surface_fit.h"
 #include "remesh/working_surface.h"
@@ -61,6 +62,13 @@ struct Budget {
   int levels = 0;
   double base_size = 0;      // see BaseDomainOptions
   double boundary_side = 0;
+};
+
+// The last level with operations (0: none), all of whose quads have a map of their own.
+struct Finest {
+  int level = 0;
+  std::int64_t quads = 0, boundary_sides = 0;
+  std::vector<VertexId> irregular;  // sorted
 };
 
 // Vertices of a uniform mesh: base quads B, Euler number chi, boundary sides E.
@@ -162,7 +170,7 @@ class Remesher {
     b.boundary_side = 0.5 * std::pow(2.0, levels) / cells;
     b.base_size = (static_cast<double>(b.vertices) - static_cast<double>(topology_.euler)) / cells;
     if (options_.base == BaseSize::Given) b.base_size = options_.base_quads, b.boundary_side = 0;
-    if (options_.base == BaseSize::Minimal) b.base_size = 1, b.boundary_side = 0;
+    if (options_.base == BaseSize::Minimal) b.base_size = 6, b.boundary_side = 0;
   }
 
   void build_base() {
@@ -171,11 +179,13 @@ class Remesher {
     std::int64_t least = -1;
     for (int attempt = 0; attempt < 8; ++attempt) {
       try {
-        const PatchedSurface patches = try_base(attempt);
-        std::int64_t sides = 0;
-        for (const auto& n : patches.neighbours)
-          for (const PatchSide& s : n) sides += s.patch < 0;
-        const std::int64_t needed = uniform_vertices(patches.patch_count(), topology_.euler, sides, budget_.levels);
+        try_base(attempt);
+        // With a base of any size the number of levels is what makes a mesh of the size asked for.
+        if (options_.base == BaseSize::Minimal && options_.refinement == Refinement::Uniform && options_.levels < 0 && options_.error == 0) {
+          budget_.levels = finest_.level;
+          while (budget_.levels < 12 && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
+        }
+        const std::int64_t needed = vertices_at(std::max(finest_.level, budget_.levels));
         const bool bound = options_.vertices > 0 && options_.refinement == Refinement::Uniform;
         if (bound && needed > options_.vertices) {
           least = least < 0 ? needed : std::min(least, needed);
@@ -194,40 +204,95 @@ class Remesher {
     throw Error(ErrorCode::Internal, failure);
   }
 
-  PatchedSurface try_base(int attempt) {
+  std::int64_t vertices_at(int level) const { return uniform_vertices(finest_.quads, topology_.euler, finest_.boundary_sides, level - finest_.level); }
+
+  // How the layout is searched: on the base alone, or on finer levels too, where skin is grown.
+  LayoutSearchOptions search_options(const BaseDomain& base, int attempt) const {
+    LayoutSearchOptions search;
+    search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
+    search.vertices = 30.0 * base.quads();
+    if (options_.base != BaseSize::Minimal) return search;
+    // The base's quads are far larger than the shape's features, and there is nothing yet to choose between layouts by.
+    search.rounds = 0;
+    search.map.vertices_a_quad = std::max(15.0, 1000.0 / base.quads());
+    search.vertices = std::max(1500.0, 30.0 * base.quads());
+    if (options_.semi_regular || attempt >= 5) return search;
+    LayoutSearchOptions finer = search;
+    double quads = base.quads();
+    int levels = 0;
+    while (quads < 60 && levels != options_.levels) {
+      quads *= 4;
+      ++levels;
+      finer.map.vertices_a_quad = std::max(15.0, 1000 / quads);
+      finer.vertices = std::max(1500.0, (attempt == 1 ? 60 : 34) * quads);
+      finer.quads = static_cast<int>(1.3 * quads);
+      search.finer.push_back(finer);
+    }
+    // Limbs first, then what has to be finer.
+    const double x = options_.stretch_threshold;
+    finer.relayout = 0.5 * search.map.theta * (x + 1 / x - 2);
+    finer.rounds = 2;
+    finer.trials = 80;
+    if (!search.finer.empty()) search.finer.back() = finer;
+    if (quads < 250 && levels != options_.levels) {
+      finer.vertices = (attempt == 1 ? 60 : 30) * 4 * quads;
+      finer.map.vertices_a_quad = 15;
+      finer.quads = static_cast<int>(5 * quads);
+      search.finer.push_back(finer);
+    }
+    return search;
+  }
+
+  void try_base(int attempt) {
     progress_.stage("base domain");
     watch_.start("base");
     working_ = make_working_surface(result_.repaired, placement_, static_cast<std::int64_t>(std::min(30.0 * budget_.base_size, 2e6)));
     BaseDomainOptions base_options;
     base_options.size = budget_.base_size;
     base_options.boundary_side = budget_.boundary_side;
+    // A cube for a ball, and more quads where a map to so few cannot be had.
+    if (options_.base == BaseSize::Minimal) base_options.size = base_options.least = attempt < 2 ? 6 : 6 << std::min(attempt - 1, 6);
     base_options.seed = options_.seed + 1000003ull * (attempt + first_attempt_);
     // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
     if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= 4;
     const BaseDomain base(working_.mesh, base_options, progress_.part(0.05, 0.15));
     progress_.stage("map");
     watch_.start("map");
-    LayoutSearchOptions search;
-    search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
-    BaseMap map = map_to_base(working_.mesh, base, search, progress_.part(0.15, 0.5));
-    PatchedSurface& patches = map.layout;
+    BaseMap map = map_to_base(working_.mesh, base, search_options(base, attempt), progress_.part(0.15, 0.5));
     watch_.start("extract");
-    std::vector<PatchMap> maps = extract_patch_maps(map.charts, patches, working_.mesh.faces, progress_.part(0.5, 0.55));
-    std::vector<std::array<SideLink, 4>> links(patches.patch_count());
-    for (int q = 0; q < patches.patch_count(); ++q)
-      for (int i = 0; i < 4; ++i) links[q][i] = {patches.neighbours[q][i].patch, patches.neighbours[q][i].side};
-    HybridMesh hierarchy = HybridMesh::from_base(patches.node_count, patches.nodes, links);
-    for (int q = 0; q < patches.patch_count(); ++q) {
-      const char* defect = find_map_defect(maps[q]);
-      if (*defect) throw Error(ErrorCode::Internal, "the map of base quad " + std::to_string(q) + ": " + defect);
-      working_.to_repaired(maps[q], result_.repaired);
-      hierarchy.set_map(q, std::move(maps[q]));
+    const PatchedSurface& first = map.levels.front().layout;
+    report_["base"] = {{"quads", first.patch_count()}, {"vertices", first.node_count}};
+    LayoutHierarchy made = make_hierarchy(first, map.edits);
+    const double parts = static_cast<double>(map.levels.size());
+    for (std::size_t i = 0; i < map.levels.size(); ++i) {
+      LevelMap& level = map.levels[i];
+      std::vector<PatchMap> maps = extract_patch_maps(level.charts, level.layout, working_.mesh.faces, progress_.part(0.5 + 0.05 * i / parts, 0.5 + 0.05 * (i + 1) / parts));
+      for (int q = 0; q < level.layout.patch_count(); ++q) {
+        const char* defect = find_map_defect(maps[q]);
+        if (*defect) throw Error(ErrorCode::Internal, "the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
+        working_.to_repaired(maps[q], result_.repaired);
+        made.mesh.set_map(made.node_of[level.level][q], std::move(maps[q]));
+      }
     }
-    hierarchy.set_closure(options_.faces);
-    result_.hierarchy = std::move(hierarchy);
-    report_["base"] = {{"quads", patches.patch_count()}, {"vertices", patches.node_count}};
+    made.mesh.set_closure(options_.faces);
+    const LevelMap& finest = map.levels.back();
+    finest_.level = finest.level;
+    finest_.quads = finest.layout.patch_count();
+    finest_.boundary_sides = 0;
+    for (const auto& n : finest.layout.neighbours)
+      for (const PatchSide& s : n) finest_.boundary_sides += s.patch < 0;
+    result_.hierarchy = std::move(made.mesh);
+    finest_.irregular = irregular_names(result_.hierarchy.level_mesh(finest_.level));
     watch_.stop();
-    return std::move(patches);
+  }
+
+  static std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
+    const std::vector<char> irregular = irregular_vertices(mesh);
+    std::vector<VertexId> names;
+    for (std::size_t v = 0; v < irregular.size(); ++v)
+      if (irregular[v]) names.push_back(mesh.vertex[v]);
+    std::sort(names.begin(), names.end());
+    return names;
   }
 
   // --- levels ----------------------------------------------------------------------------------------------------------------------
@@ -292,7 +357,7 @@ class Remesher {
 
   void fit_level(int level) {
     watch_.start("fit");
-    result_.hierarchy.refine_uniform(level);
+    result_.hierarchy.refine_uniform(std::max(level, finest_.level));
     result_.final_mesh = result_.hierarchy.level_mesh(level);
     fit(result_.final_mesh, final_fit(), 2, level, progress_.part(0.6, 0.8));
   }
@@ -323,14 +388,16 @@ class Remesher {
     QuadMesh mesh;
     Json base, levels;
     SurfaceDistance distance;
+    Finest finest;
   };
-  Made set_aside() { return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_}; }
+  Made set_aside() { return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_, finest_}; }
   void put_back(Made made) {
     result_.hierarchy = std::move(made.hierarchy);
     result_.final_mesh = std::move(made.mesh);
     report_["base"] = std::move(made.base);
     report_["levels"] = std::move(made.levels);
     final_distance_ = made.distance;
+    finest_ = std::move(made.finest);
   }
 
   // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.
@@ -469,7 +536,16 @@ class Remesher {
             {"hausdorff", d.hausdorff},
             {"stretch", {{"p05", at(0.05)}, {"p50", at(0.5)}, {"p95", at(0.95)}, {"max", sorted.empty() ? 0.0 : sorted.back()}}},
             {"irregular_vertices", std::count(irregular.begin(), irregular.end(), 1)},
-            {"irregular_ops", Json::array()}};
+            {"irregular_ops", operations_of(j)}};
+  }
+
+  Json operations_of(int level) const {
+    Json list = Json::array();
+    for (int i = 0; i < result_.hierarchy.operation_count(); ++i) {
+      const HybridMesh::Operation& op = result_.hierarchy.operation(i);
+      if (op.repatch.level == level) list.push_back({{"kind", op.repatch.kind}, {"removed_quads", op.repatch.removed.size()}, {"new_quads", op.roots.size()}});
+    }
+    return list;
   }
 
   void finish() {
@@ -484,12 +560,15 @@ class Remesher {
       throw Error(ErrorCode::Internal, "the final mesh does not have the surface's topology");
     const QuadQuality q = quad_quality(mesh);
     const std::vector<char> irregular = irregular_vertices(mesh);
-    std::int64_t of_base = 0, of_transitions = 0;
-    for (std::size_t v = 0; v < irregular.size(); ++v) {
-      if (!irregular[v]) continue;
-      const VertexId id = mesh.vertex[v];
-      (id.kind() == VertexId::Kind::Free && id.index() < h.base_vertex_count() ? of_base : of_transitions) += 1;
+    std::int64_t of_base = 0, of_operations = 0, of_transitions = 0;
+    for (const VertexId id : irregular_names(mesh)) {
+      if (id.kind() == VertexId::Kind::Free && id.index() < h.base_vertex_count())
+        ++of_base;
+      else
+        ++(std::binary_search(finest_.irregular.begin(), finest_.irregular.end(), id) ? of_operations : of_transitions);
     }
+    std::int64_t inserted = h.base_count();
+    for (int i = 0; i < h.operation_count(); ++i) inserted += static_cast<std::int64_t>(h.operation(i).roots.size());
     const std::int64_t leaves = h.leaf_counts().faces;
     report_["final"] = {{"vertices", mesh.points.size()},
                         {"quads", q.quads},
@@ -500,8 +579,8 @@ class Remesher {
                         {"genus", t.genus},
                         {"components", t.components},
                         {"boundary_loops", t.boundary_loops},
-                        {"regular_fraction", 1.0 - static_cast<double>(h.base_count()) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
-                        {"irregular_vertices", {{"base", of_base}, {"operations", 0}, {"transitions", of_transitions}}},
+                        {"regular_fraction", 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
+                        {"irregular_vertices", {{"base", of_base}, {"operations", of_operations}, {"transitions", of_transitions}}},
                         {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
     if (options_.error > 0) report_["final"]["error_bound_met"] = d.l2 <= options_.error;
     report_["warnings"] = warnings(d.l2);
@@ -525,11 +604,11 @@ class Remesher {
     HybridMesh& h = result_.hierarchy;
     std::vector<QuadMesh> levels;
     for (int j = 0; j <= h.depth(); ++j) levels.push_back(h.level_mesh(j));
-    for (const int root : h.roots())
-      if (const PatchMap* map = h.map(root)) {
+    for (int n = 0; n < h.node_count(); ++n)
+      if (const PatchMap* map = h.map(n)) {
         PatchMap placed = *map;
         for (Vec3& p : placed.positions) p = placement_.from_unit(p);
-        h.set_map(root, std::move(placed));
+        h.set_map(n, std::move(placed));
       }
     h.clear_positions();
     for (int j = 0; j < static_cast<int>(levels.size()); ++j) {
@@ -552,6 +631,7 @@ class Remesher {
   PolygonSoup input_unit_;
   SurfaceDistance final_distance_;
   Budget budget_;
+  Finest finest_;
   // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
   std::int64_t aim_ = 0;
   int levels_less_ = 0;

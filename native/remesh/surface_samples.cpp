@@ -9,42 +9,64 @@ namespace hybrid_mesh {
 
 namespace {
 
-// Quads of the leaf's size to a root quad, at a place in the root's square.
+// Quads of the leaf's size to a root quad, at a place in the square of a node that owns a map; 0 where the map does not count there: below it the
+// quads have another map, or an irregular operation has removed them.
 double fineness(const HybridMesh& hierarchy, int node, double u, double v, int finest) {
   while (hierarchy.first_child(node) >= 0 && hierarchy.level(node) < finest) {
     const int right = u >= 0.5, upper = v >= 0.5;
     node = hierarchy.first_child(node) + (upper ? 3 - right : right);
+    if (!hierarchy.is_active(node) || hierarchy.map(node)) return 0;
     u = 2 * u - right;
     v = 2 * v - upper;
   }
   return std::ldexp(1.0, 2 * hierarchy.level(node));
 }
 
+// The nodes whose maps count in the mesh of leaves up to a level.
+std::vector<int> map_owners(const HybridMesh& hierarchy, int finest) {
+  std::vector<int> owners, stack = hierarchy.roots();
+  std::reverse(stack.begin(), stack.end());
+  while (!stack.empty()) {
+    const int n = stack.back();
+    stack.pop_back();
+    if (hierarchy.level(n) > finest || !hierarchy.is_active(n)) continue;
+    if (hierarchy.map(n)) owners.push_back(n);
+    if (hierarchy.first_child(n) >= 0)
+      for (int k = 3; k >= 0; --k) stack.push_back(hierarchy.first_child(n) + k);
+  }
+  return owners;
+}
+
 }  // namespace
 
 SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest) {
   double total = 0;
-  const std::vector<int> roots = hierarchy.roots();
+  const std::vector<int> owners = map_owners(hierarchy, finest);
   const auto normal_of = [](const PatchMap& m, const std::array<int, 3>& t) { return Vec3((m.positions[t[1]] - m.positions[t[0]]).cross(m.positions[t[2]] - m.positions[t[0]])); };
-  for (const int root : roots)
-    if (const PatchMap* map = hierarchy.map(root))
-      for (const auto& t : map->triangles) {
-        const Vec2 c = (map->uv[t[0]] + map->uv[t[1]] + map->uv[t[2]]) / 3;
-        const double f = fineness(hierarchy, root, c.x(), c.y(), finest);
-        total += 0.5 * normal_of(*map, t).norm() * f;
-      }
+  // A triangle may reach over into where its map does not count: judged by a few of its points.
+  const auto density_of = [&](int owner, const PatchMap& m, const std::array<int, 3>& t) {
+    const Vec2 c = (m.uv[t[0]] + m.uv[t[1]] + m.uv[t[2]]) / 3;
+    double sum = fineness(hierarchy, owner, c.x(), c.y(), finest);
+    for (const int v : t) {
+      const Vec2 p = 0.3 * c + 0.7 * m.uv[v];
+      sum += fineness(hierarchy, owner, p.x(), p.y(), finest);
+    }
+    return sum / 4;
+  };
+  for (const int owner : owners) {
+    const PatchMap& map = *hierarchy.map(owner);
+    for (const auto& t : map.triangles) total += 0.5 * normal_of(map, t).norm() * density_of(owner, map, t);
+  }
   if (!(total > 0)) return;
   const double density = static_cast<double>(count) / total;
   double area = 0;
   std::int64_t made = 0;
-  for (const int root : roots) {
-    const PatchMap* map = hierarchy.map(root);
-    if (!map) continue;
-    for (const auto& t : map->triangles) {
-      const Vec3 n = normal_of(*map, t);
+  for (const int owner : owners) {
+    const PatchMap& map = *hierarchy.map(owner);
+    for (const auto& t : map.triangles) {
+      const Vec3 n = normal_of(map, t);
       const double l = n.norm();
-      const Vec2 middle = (map->uv[t[0]] + map->uv[t[1]] + map->uv[t[2]]) / 3;
-      const double f = fineness(hierarchy, root, middle.x(), middle.y(), finest);
+      const double f = density_of(owner, map, t);
       area += 0.5 * l * f;
       for (const std::int64_t target = static_cast<std::int64_t>(area * density); made < target; ++made) {
         // Roberts' R2 sequence, folded into the triangle.
@@ -53,8 +75,9 @@ SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, 
         b -= std::floor(b);
         if (a + b > 1) a = 1 - a, b = 1 - b;
         const double c = 1 - a - b;
-        const Vec2 uv = c * map->uv[t[0]] + a * map->uv[t[1]] + b * map->uv[t[2]];
-        samples_.push_back({c * map->positions[t[0]] + a * map->positions[t[1]] + b * map->positions[t[2]], n / l, 1 / f, {root, uv.x(), uv.y()}});
+        const Vec2 uv = c * map.uv[t[0]] + a * map.uv[t[1]] + b * map.uv[t[2]];
+        if (fineness(hierarchy, owner, uv.x(), uv.y(), finest) == 0) continue;
+        samples_.push_back({c * map.positions[t[0]] + a * map.positions[t[1]] + b * map.positions[t[2]], n / l, 1 / f, {owner, uv.x(), uv.y()}});
       }
     }
   }
@@ -82,7 +105,6 @@ std::vector<FitSample> SurfaceSamples::on(const HybridMesh& hierarchy, const Qua
       u = 2 * u - right;
       v = 2 * v - upper;
     }
-    // Under a quad that an irregular operation removed, any face is as good to start from as another.
     int face = std::max(0, face_of[node]);
     for (int f = next[face]; f >= 0; f = next[f])
       if ((middle[f] - s.position).squaredNorm() < (middle[face] - s.position).squaredNorm()) face = f;

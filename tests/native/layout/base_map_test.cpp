@@ -67,7 +67,7 @@ std::optional<LayoutEdit> random_edit(const PatchedSurface& s, std::mt19937& ran
   else if (kind == 2 && region->inner_nodes.size() == 1)
     edit = star_edit(*region, pick(2));
   else
-    edit = ring_edit(s, *region);
+    edit = tower_edit(s, *region, 1 + pick(2));
   if (!edit || !irregular_growth(s, *region, *edit, node_valences(s), boundary_nodes(s))) return std::nullopt;
   return edit;
 }
@@ -89,9 +89,10 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
       ++applied;
       const int before = fine.surface.patch_count(), irregular = irregular_nodes(fine.surface);
       const int growth = *irregular_growth(fine.surface, *make_region(fine.surface, edit->patches, edit->start), *edit, node_valences(fine.surface), boundary_nodes(fine.surface));
+      PatchedSurface nodes_alone = fine.surface;
+      change_layout(nodes_alone, *edit);
       for (MappedSurface* m : {&fine, &coarse}) {
-        const std::vector<int> fresh = apply_edit(*m, *edit);
-        map_patches(m->surface, fresh, m->corners, Progress(context));
+        map_patches(m->surface, apply_edit(*m, *edit).added, m->corners, Progress(context));
         // The maps of old and new patches meet along their sides.
         testing::expect_bijective(ChartMesh(m->surface, m->corners));
       }
@@ -100,6 +101,7 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
       testing::expect_layout(surface, fine.surface);
       testing::expect_layout(cut.coarse, coarse.surface);
       EXPECT_EQ(coarse.surface.nodes, fine.surface.nodes);
+      EXPECT_EQ(nodes_alone.nodes, fine.surface.nodes);
       for (const int v : node_valences(fine.surface)) EXPECT_LE(v, 6);
     }
     EXPECT_GE(applied, 6);
@@ -160,7 +162,10 @@ TEST(BaseMap, IsBijectiveAndCarriedToEveryVertex) {
     Context context;
     LayoutSearchOptions options;
     options.quads = 44;
-    BaseMap map = map_to_base(surface, base, options, Progress(context));
+    options.vertices = 30.0 * base.quads();
+    BaseMap found = map_to_base(surface, base, options, Progress(context));
+    ASSERT_EQ(found.levels.size(), 1u);
+    LevelMap& map = found.levels[0];
     EXPECT_LE(map.layout.patch_count(), 44);
     EXPECT_GE(map.layout.patch_count(), base.quads());
     testing::expect_bijective(map.charts);
@@ -193,10 +198,11 @@ TEST(LayoutSearch, LowersTheEnergyWithinTheSizeAllowed) {
     LayoutSearchOptions options;
     options.rounds = rounds;
     options.quads = quads;
-    const LayoutSearchResult found = search_layout(cut.patches, cut.coarse.faces, options, Progress(context));
-    EXPECT_LE(cut.patches.patch_count(), std::max(quads, base.quads()));
+    const LayoutSearchResult result = search_layout(CarriedMap(surface, std::move(cut)), options, Progress(context));
+    const CarriedMap& found = result.stages.at(0).map;
+    EXPECT_LE(found.layout.patch_count(), std::max(quads, base.quads()));
     testing::expect_bijective(found.charts);
-    expect_simple(cut.patches);
+    expect_simple(found.layout);
     Distortion density{options.map.theta};
     double sum = 0, area = 0;
     for (int f = 0; f < static_cast<int>(found.charts.mesh.alive.size()); ++f) {
@@ -212,6 +218,123 @@ TEST(LayoutSearch, LowersTheEnergyWithinTheSizeAllowed) {
   const double without = energy(0, base.quads()), turned = energy(3, base.quads()), grown = energy(3, base.quads() + 8);
   EXPECT_LT(turned, without);
   EXPECT_LE(grown, 1.02 * turned);
+}
+
+// A ball with two spikes, for which a cube has no skin.
+PolygonSoup spiked_ball(int n) {
+  PolygonSoup soup = ball(n);
+  for (Vec3& p : soup.points) {
+    const double r = p.norm(), z = p.z() / r, x = p.x() / r;
+    if (z > 0.9) p.z() += 12 * (z - 0.9) * r;
+    if (x > 0.9) p.x() += 9 * (x - 0.9) * r;
+  }
+  return soup;
+}
+
+TEST(Quadrisection, LeavesTheMapWhereItIs) {
+  for (const PolygonSoup& soup : {ball(14, 0.5), torus(40, 20)}) {
+    const TriangleSurface surface = unit(repaired(soup));
+    Context context;
+    PatchedSurface s = base_of(surface, 30).cut(whole_surface, Progress(context)).patches;
+    const auto corners = map_patches(s, Progress(context));
+    ChartMesh charts(s, corners);
+    smooth_map(charts, s, GlobalMapOptions(), Progress(context));
+    ChartMesh finer = charts;
+    const std::vector<PatchMap> maps = extract_patch_maps(charts, s, surface.faces, Progress(context));
+    finer.quadrisect();
+    const PatchedSurface layout = quadrisected(s);
+    ASSERT_EQ(layout.patch_count(), 4 * s.patch_count());
+    const std::vector<PatchMap> parts = extract_patch_maps(finer, layout, surface.faces, Progress(context));
+    expect_simple(layout);
+    for (int q = 0; q < s.patch_count(); ++q) {
+      const PatchSampler whole(maps[q]);
+      for (int k = 0; k < 4; ++k) {
+        EXPECT_STREQ(find_map_defect(parts[4 * q + k]), "");
+        const PatchSampler part(parts[4 * q + k]);
+        const double right = k == 1 || k == 2, upper = k >= 2;
+        for (const double u : {0.13, 0.5, 0.81})
+          for (const double v : {0.27, 0.66}) EXPECT_LT((part(u, v).position - whole(0.5 * (u + right), 0.5 * (v + upper)).position).norm(), 1e-6);
+      }
+    }
+  }
+}
+
+TEST(EvenEdit, LaysADiskOutAnewWithinItsBoundary) {
+  const TriangleSurface surface = unit(repaired(ball(24)));
+  Context context;
+  const PatchedSurface s = base_of(surface, 80).cut(whole_surface, Progress(context)).patches;
+  int applied = 0;
+  for (int q = 0; q < s.patch_count() && applied < 6; q += 7) {
+    // Two rings of quads around one.
+    std::vector<char> in(s.patch_count(), 0);
+    in[q] = 1;
+    for (int ring = 0; ring < 2; ++ring) {
+      std::vector<char> node(s.node_count, 0);
+      for (int p = 0; p < s.patch_count(); ++p)
+        if (in[p])
+          for (const int n : s.nodes[p]) node[n] = 1;
+      for (int p = 0; p < s.patch_count(); ++p)
+        for (const int n : s.nodes[p]) in[p] |= node[n];
+    }
+    std::vector<int> patches;
+    for (int p = 0; p < s.patch_count(); ++p)
+      if (in[p]) patches.push_back(p);
+    const auto region = make_region(s, patches);
+    if (!region) continue;
+    std::optional<DrawnEdit> drawn = even_edit(s, *region, 1.5 * static_cast<double>(patches.size()), 1, Progress(context));
+    if (!drawn) continue;
+    ++applied;
+    const int growth = drawn->edit.growth();
+    MappedSurface mapped{s, {}};
+    mapped.corners = map_patches(mapped.surface, Progress(context));
+    map_patches(mapped.surface, apply_edit(mapped, std::move(*drawn)).added, mapped.corners, Progress(context));
+    EXPECT_EQ(mapped.surface.patch_count(), s.patch_count() + growth);
+    EXPECT_GT(growth, 0);
+    testing::expect_layout(surface, mapped.surface);
+    expect_simple(mapped.surface);
+    testing::expect_bijective(ChartMesh(mapped.surface, mapped.corners));
+  }
+  EXPECT_GE(applied, 3);
+}
+
+TEST(LayoutSearch, GrowsSkinOnFinerLevels) {
+  const TriangleSurface surface = unit(repaired(spiked_ball(30)));
+  BaseDomainOptions base_options;
+  base_options.size = 6;
+  base_options.least = 6;
+  Context context;
+  const BaseDomain base(surface, base_options, Progress(context));
+  EXPECT_EQ(base.quads(), 6);
+  LayoutSearchOptions options;
+  options.rounds = 0;
+  options.quads = 6;
+  options.vertices = 1500;
+  options.map.vertices_a_quad = 150;
+  LayoutSearchOptions finer = options;
+  finer.vertices = 3000;
+  finer.quads = 130;
+  options.finer = {finer, finer};
+  options.finer.back().relayout = 0.5;
+  options.finer.back().rounds = 2;
+  const BaseMap without = [&] {
+    LayoutSearchOptions plain = options;
+    plain.finer.clear();
+    return map_to_base(surface, base, plain, Progress(context));
+  }();
+  EXPECT_EQ(without.levels.size(), 1u);
+  BaseMap found = map_to_base(surface, base, options, Progress(context));
+  ASSERT_EQ(found.edits.size(), 3u);
+  EXPECT_TRUE(found.edits[0].empty());
+  EXPECT_TRUE(found.edits[1].empty());
+  EXPECT_FALSE(found.edits[2].empty());
+  ASSERT_EQ(found.levels.size(), 2u);
+  EXPECT_EQ(found.levels[0].level, 0);
+  EXPECT_EQ(found.levels[1].level, 2);
+  for (LevelMap& level : found.levels) {
+    testing::expect_bijective(level.charts);
+    expect_simple(level.layout);
+    for (const PatchMap& m : extract_patch_maps(level.charts, level.layout, surface.faces, Progress(context))) EXPECT_STREQ(find_map_defect(m), "");
+  }
 }
 
 }  // namespace

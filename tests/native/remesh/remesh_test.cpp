@@ -73,6 +73,70 @@ TEST_P(RemeshKinds, AreAsGoodFarAwayAndAtAnyScale) {
   }
 }
 
+// A ball with two spikes, of which a cube's quads have no skin to cover.
+PolygonSoup spiked_ball(int n) {
+  PolygonSoup soup = ball(n);
+  for (Vec3& p : soup.points) {
+    const double r = p.norm(), z = p.z() / r, x = p.x() / r;
+    if (z > 0.9) p.z() += 12 * (z - 0.9) * r;
+    if (x > 0.9) p.x() += 9 * (x - 0.9) * r;
+  }
+  return soup;
+}
+
+RemeshOptions from_a_cube(std::int64_t vertices, Refinement refinement) {
+  RemeshOptions options;
+  options.vertices = vertices;
+  options.refinement = refinement;
+  options.base = BaseSize::Minimal;
+  return options;
+}
+
+RemeshResult run(const PolygonSoup& soup, const RemeshOptions& options) {
+  Context context;
+  return remesh(soup, options, context);
+}
+
+TEST_P(RemeshKinds, GrowSkinWithinTheHierarchyOfACube) {
+  const PolygonSoup soup = spiked_ball(40);
+  RemeshOptions options = from_a_cube(4000, GetParam());
+  const RemeshResult hybrid = run(soup, options);
+  EXPECT_TRUE(find_defects(hybrid.hierarchy).empty());
+  EXPECT_EQ(hybrid.hierarchy.base_count(), 6);
+  ASSERT_GT(hybrid.hierarchy.operation_count(), 0);
+  const auto& report = hybrid.report;
+  std::int64_t inserted = 6;
+  int reported = 0;
+  for (const auto& level : report["levels"])
+    for (const auto& op : level["irregular_ops"]) {
+      ++reported;
+      inserted += op["new_quads"].get<std::int64_t>();
+      EXPECT_GT(op["removed_quads"].get<int>(), 0);
+    }
+  EXPECT_EQ(reported, hybrid.hierarchy.operation_count());
+  EXPECT_NEAR(report["final"]["regular_fraction"].get<double>(), 1 - static_cast<double>(inserted) / static_cast<double>(hybrid.hierarchy.leaf_counts().faces), 1e-12);
+  EXPECT_GT(report["final"]["irregular_vertices"]["operations"].get<int>(), 0);
+  if (GetParam() == Refinement::Uniform) {
+    EXPECT_EQ(report["final"]["irregular_vertices"]["transitions"].get<int>(), 0);
+  }
+  // Every level is a ball, before its operations and after.
+  for (int j = 0; j <= hybrid.hierarchy.depth(); ++j)
+    for (const LevelKind kind : {LevelKind::M, LevelKind::N}) {
+      const QuadMesh mesh = hybrid.hierarchy.level_mesh(j, kind);
+      const TopologySummary t = summarize_topology(to_soup(mesh));
+      EXPECT_EQ(t.nonmanifold_edges + t.nonmanifold_vertices + t.misoriented_edges, 0);
+      EXPECT_EQ(t.euler, 2);
+      EXPECT_EQ(t.components, 1);
+      for (const Vec3& p : mesh.points) EXPECT_TRUE(p.allFinite());
+    }
+  EXPECT_EQ(encode_hierarchy(hybrid.hierarchy, "{}"), encode_hierarchy(run(soup, options).hierarchy, "{}"));
+  options.semi_regular = true;
+  const RemeshResult plain = run(soup, options);
+  EXPECT_EQ(plain.hierarchy.operation_count(), 0);
+  const auto q = [](const RemeshResult& r) { return r.report["final"]["l2"].get<double>() * r.report["final"]["vertices"].get<double>(); };
+  EXPECT_LT(q(hybrid), q(plain));
+}
+
 TEST(Remesh, LevelsAreExactWhenAskedFor) {
   RemeshOptions options;
   options.levels = 2;
