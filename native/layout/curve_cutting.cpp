@@ -4,49 +4,9 @@
 #include <cmath>
 
 #include "layout/curves_on_mesh.h"
+#include "layout/face_splitting.h"
 
 namespace hybrid_mesh {
-namespace {
-
-// Splits a convex polygon with corners on the sides of one triangle into triangles none of which lies along one side.
-class PolygonSplitter {
- public:
-  struct Corner {
-    int point;    // index of the point
-    int mark;     // of the polygon's edge to the next corner
-    Vec2 at;      // in a reference triangle
-    int sides;    // bit set of the triangle's sides that hold it
-  };
-  template <class Emit>
-  static void split(std::vector<Corner> polygon, const Emit& emit) {
-    while (polygon.size() > 3) {
-      const int n = static_cast<int>(polygon.size());
-      int best = -1;
-      double best_quality = -1;
-      for (int i = 0; i < n; ++i) {
-        const Corner &a = polygon[(i + n - 1) % n], &b = polygon[i], &c = polygon[(i + 1) % n];
-        if (a.sides & b.sides & c.sides) continue;
-        int rest = ~0;
-        for (int j = 0; j < n; ++j)
-          if (j != i) rest &= polygon[j].sides;
-        if (rest) continue;
-        const Vec2 ab = b.at - a.at, bc = c.at - b.at, ca = a.at - c.at;
-        const double area = ab.x() * bc.y() - ab.y() * bc.x();
-        const double quality = area / (ab.squaredNorm() + bc.squaredNorm() + ca.squaredNorm());
-        if (quality > best_quality) best_quality = quality, best = i;
-      }
-      if (best < 0) throw Error(ErrorCode::Internal, "a piece of a triangle lies along one of its sides");
-      const int p = (best + n - 1) % n, q = (best + 1) % n;
-      emit(polygon[p], polygon[best], polygon[q], polygon[p].mark, polygon[best].mark, -1);
-      polygon[p].mark = -1;
-      polygon.erase(polygon.begin() + best);
-    }
-    if (polygon[0].sides & polygon[1].sides & polygon[2].sides) throw Error(ErrorCode::Internal, "a piece of a triangle lies along one of its sides");
-    emit(polygon[0], polygon[1], polygon[2], polygon[0].mark, polygon[1].mark, polygon[2].mark);
-  }
-};
-
-}  // namespace
 
 PatchedSurface CurveNetwork::cut() {
   PatchedSurface out;
@@ -70,10 +30,10 @@ PatchedSurface CurveNetwork::cut() {
     }
     collect(true);
     // Where each station lies in the reference triangle, and on which of its sides.
-    std::vector<PolygonSplitter::Corner> polygon;
+    std::vector<PieceCorner> polygon;
     int corner = 0;
     for (const Station& s : stations_) {
-      PolygonSplitter::Corner c{};
+      PieceCorner c{};
       std::array<double, 3> w{0, 0, 0};
       if (s.corner >= 0) {
         corner = s.corner;
@@ -93,36 +53,14 @@ PatchedSurface CurveNetwork::cut() {
       c.at = w[0] * reference[0] + w[1] * reference[1] + w[2] * reference[2];
       polygon.push_back(c);
     }
-    const auto emit = [&](const PolygonSplitter::Corner& a, const PolygonSplitter::Corner& b, const PolygonSplitter::Corner& c, int ab, int bc, int ca) {
+    const auto emit = [&](const PieceCorner& a, const PieceCorner& b, const PieceCorner& c, int ab, int bc, int ca) {
       fine.faces.push_back({a.point, b.point, c.point});
       fine.source_face.push_back(f);
       marks.insert(marks.end(), {ab, bc, ca});
     };
-    // Cut off the shortest arc first: what lies below it holds no other chord.
-    std::vector<std::pair<int, int>> cuts;
-    std::vector<int> cut_curve;
-    for (const Chord& c : chords_) {
-      cuts.push_back({std::min(c.from, c.to), std::max(c.from, c.to)});
-      cut_curve.push_back(c.curve);
-    }
-    std::vector<int> order(cuts.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return std::pair(cuts[a].second - cuts[a].first, a) < std::pair(cuts[b].second - cuts[b].first, b); });
-    std::vector<int> left(polygon.size());
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<int>(i);
-    for (const int i : order) {
-      const auto low = std::find(left.begin(), left.end(), cuts[i].first), high = std::find(left.begin(), left.end(), cuts[i].second);
-      std::vector<PolygonSplitter::Corner> piece;
-      for (auto it = low; it != high + 1; ++it) piece.push_back(polygon[*it]);
-      if (piece.size() < 3) throw Error(ErrorCode::Internal, "a base curve runs along a side of a triangle");
-      piece.back().mark = cut_curve[i];
-      polygon[*low].mark = cut_curve[i];
-      PolygonSplitter::split(piece, emit);
-      left.erase(low + 1, high);
-    }
-    std::vector<PolygonSplitter::Corner> rest;
-    for (const int i : left) rest.push_back(polygon[i]);
-    PolygonSplitter::split(rest, emit);
+    std::vector<FaceChord> cuts;
+    for (const Chord& c : chords_) cuts.push_back({std::min(c.from, c.to), std::max(c.from, c.to), c.curve});
+    split_along_chords(polygon, cuts, emit);
   }
   connect_half_edges(fine);
 

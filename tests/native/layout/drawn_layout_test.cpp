@@ -1,0 +1,560 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/drawn_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "drawn_strokes.h"
+#include "layouts.h"
+#include "models.h"
+#include "parameterization/convex_map.h"
+#include "parameterization/initial_map.h"
+#include "surface/closest_point.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using testing::ball;
+using testing::cube_strokes;
+using testing::diagonal;
+using testing::jitter;
+using testing::layout_of;
+using testing::repaired;
+using testing::sphere;
+using testing::torus;
+using testing::unit;
+using Kind = LayoutProblem::Kind;
+
+std::string all_messages(const DrawnLayout& d) {
+  std::string text;
+  for (const LayoutProblem& p : d.problems) text += std::string(name_of(p.kind)) + ": " + p.message + " (stroke " + std::to_string(p.stroke) + ")\n";
+  return text;
+}
+
+int count(const DrawnLayout& d, Kind kind) {
+  return static_cast<int>(std::count_if(d.problems.begin(), d.problems.end(), [&](const LayoutProblem& p) { return p.kind == kind; }));
+}
+
+std::multiset<int> face_sizes(const PatchLayout& l) {
+  std::multiset<int> sizes;
+  for (const auto& f : l.faces) sizes.insert(f.side_count());
+  return sizes;
+}
+
+// Whatever was drawn: curves are disjoint, lie on the surface, bound the faces that name them, and Euler's formula holds.
+void expect_sound(const TriangleSurface& surface, const PatchLayout& l) {
+  const double size = diagonal(surface);
+  std::set<int> inner, nodes(l.nodes.begin(), l.nodes.end());
+  ASSERT_EQ(nodes.size(), l.nodes.size());
+  std::map<std::pair<int, int>, int> half_edge;
+  for (int h = 0; h < static_cast<int>(l.mesh.opposite.size()); ++h) half_edge[{l.mesh.from(h), l.mesh.to(h)}] = h;
+  std::size_t on_curves = 0, marked = 0;
+  for (const int c : l.along) marked += c >= 0;
+  for (int c = 0; c < static_cast<int>(l.curves.size()); ++c) {
+    const PatchLayout::Curve& curve = l.curves[c];
+    ASSERT_GE(curve.points.size(), 2u);
+    EXPECT_EQ(curve.points.front(), l.nodes[curve.from]);
+    EXPECT_EQ(curve.points.back(), l.nodes[curve.to]);
+    EXPECT_EQ(curve.boundary, curve.stroke < 0);
+    for (std::size_t k = 1; k < curve.points.size(); ++k) {
+      if (k + 1 < curve.points.size()) {
+        EXPECT_TRUE(inner.insert(curve.points[k]).second) << "two curves meet outside nodes";
+        EXPECT_FALSE(nodes.count(curve.points[k]));
+      }
+      const auto at = half_edge.find({curve.points[k - 1], curve.points[k]});
+      ASSERT_NE(at, half_edge.end());
+      EXPECT_EQ(l.along[at->second], c);
+      EXPECT_EQ(l.mesh.opposite[at->second] < 0, curve.boundary);
+      on_curves += curve.boundary ? 1 : 2;
+    }
+  }
+  EXPECT_EQ(marked, on_curves);
+  const SurfaceDistanceQuery query(surface);
+  for (std::size_t v = 0; v < l.mesh.points.size(); ++v) {
+    if (!inner.count(static_cast<int>(v)) && !nodes.count(static_cast<int>(v))) continue;
+    EXPECT_LT(std::sqrt(query.closest(l.mesh.points[v]).squared_distance), 1e-12 * size);
+  }
+  double before = 0, after = 0;
+  for (const auto& f : surface.faces) before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  for (const auto& f : l.mesh.faces) after += (l.mesh.points[f[1]] - l.mesh.points[f[0]]).cross(l.mesh.points[f[2]] - l.mesh.points[f[0]]).norm();
+  EXPECT_NEAR(after, before, 1e-9 * before);
+  // Points of every triangle lie on its face of the surface.
+  for (std::size_t f = 0; f < l.mesh.faces.size(); ++f)
+    for (const int v : l.mesh.faces[f]) {
+      const std::array<double, 3> w = weights_in_face(l.source[v], surface.faces[l.mesh.source_face[f]]);
+      EXPECT_NEAR(w[0] + w[1] + w[2], 1, 1e-9);
+    }
+
+  // Sides: each curve bounds a face on either side, once; cycles close up.
+  std::vector<std::array<int, 2>> seen(l.curves.size(), {0, 0});
+  int total = 0;
+  for (int f = 0; f < static_cast<int>(l.faces.size()); ++f) {
+    total += l.faces[f].euler;
+    for (const auto& cycle : l.faces[f].cycles)
+      for (std::size_t k = 0; k < cycle.size(); ++k) {
+        const PatchLayout::Side &s = cycle[k], &next = cycle[(k + 1) % cycle.size()];
+        ++seen[s.curve][s.forward];
+        EXPECT_EQ(l.start({s.curve, !s.forward}), l.start(next));
+        const std::vector<int> points = l.points(s);
+        EXPECT_EQ(l.face[half_edge.at({points[0], points[1]}) / 3], f);
+      }
+  }
+  for (std::size_t c = 0; c < seen.size(); ++c) EXPECT_EQ(seen[c], (std::array<int, 2>{l.curves[c].boundary ? 0 : 1, 1}));
+  // Euler number of the surface: the faces', glued along curves at nodes.
+  long euler = static_cast<long>(surface.points.size()) + static_cast<long>(surface.faces.size());
+  long halves = 0, open = 0;
+  for (const int o : surface.opposite) ++halves, open += o < 0;
+  euler -= (halves + open) / 2;
+  EXPECT_EQ(total - static_cast<long>(l.curves.size()) + static_cast<long>(l.nodes.size()), euler);
+}
+
+void expect_maps(const TriangleSurface& surface, const PatchLayout& layout) {
+  ASSERT_TRUE(layout.is_quads());
+  PatchedSurface patched = to_patched_surface(layout);
+  testing::expect_layout(surface, patched);
+  Context context;
+  const auto corners = map_patches(patched, Progress(context));
+  for (const auto& c : corners) {
+    const Vec2 a = c[1] - c[0], b = c[2] - c[0];
+    EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0);
+  }
+}
+
+std::vector<DrawnStroke> sphere_cube(double gap, double noise, std::uint64_t seed, double radius = 1) {
+  return cube_strokes([&](const Vec3& d) { return Vec3(radius * d.normalized()); }, 6, gap, noise, seed);
+}
+
+TEST(DrawnLayout, TheEdgesOfACubeDrawnRoughlyAreSixQuads) {
+  for (const int n : {1, 3, 12, 40}) {
+    const TriangleSurface surface = unit(sphere(n));
+    const double radius = surface.points[0].norm();
+    for (int seed = 0; seed < (n == 12 ? 30 : 4); ++seed) {
+      SCOPED_TRACE(std::to_string(n) + " " + std::to_string(seed));
+      DrawnLayoutOptions options;
+      if (n < 12) options.reach = 0.3;
+      const DrawnLayout d = layout_of(surface, sphere_cube(0.02, 0.008, seed, radius), options);
+      expect_sound(surface, d.layout);
+      EXPECT_EQ(all_messages(d), "");
+      EXPECT_EQ(d.layout.nodes.size(), 8u);
+      EXPECT_EQ(d.layout.curves.size(), 12u);
+      EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 4, 4, 4, 4}));
+      if (d.layout.is_quads()) expect_maps(surface, d.layout);
+    }
+  }
+}
+
+TEST(DrawnLayout, TheSameOnScans) {
+  for (const auto& path : real_models()) {
+    const TriangleSurface surface = unit(repaired(read_polygon_soup(path.string())));
+    Vec3 centre = Vec3::Zero();
+    for (const Vec3& p : surface.points) centre += p / static_cast<double>(surface.points.size());
+    // What lies in a direction from the centre: not continuous where the surface is hidden by itself.
+    const auto place = [&](const Vec3& d) {
+      const Vec3* best = nullptr;
+      double cosine = -2;
+      for (const Vec3& p : surface.points)
+        if (const double c = (p - centre).normalized().dot(d.normalized()); c > cosine) cosine = c, best = &p;
+      return *best;
+    };
+    SCOPED_TRACE(path.stem().string());
+    const DrawnLayout d = layout_of(surface, cube_strokes(place, 12, 0.02, 0.008, 1));
+    expect_sound(surface, d.layout);
+    if (std::set<std::string>{"bunny", "mannequin", "max_planck"}.count(path.stem().string())) {
+      EXPECT_EQ(all_messages(d), "");
+      EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 4, 4, 4, 4}));
+      if (d.layout.is_quads()) expect_maps(surface, d.layout);
+    }
+  }
+}
+
+TEST(DrawnLayout, ACurveThatEndsNowhereIsNamedWithItsPlace) {
+  const TriangleSurface surface = unit(sphere(16));
+  const double radius = surface.points[0].norm();
+  std::vector<DrawnStroke> strokes = sphere_cube(0, 0, 1, radius);
+  const Vec3 free_end = radius * Vec3(0.1, 0.2, 1).normalized();
+  strokes.push_back({{radius * Vec3(-0.2, 0.98, 1).normalized(), radius * Vec3(0, 0.5, 1).normalized(), free_end}});
+  const DrawnLayout d = layout_of(surface, strokes);
+  expect_sound(surface, d.layout);
+  ASSERT_EQ(count(d, Kind::Dangling), 1) << all_messages(d);
+  const auto problem = std::find_if(d.problems.begin(), d.problems.end(), [](const LayoutProblem& p) { return p.kind == Kind::Dangling; });
+  EXPECT_EQ(problem->stroke, 12);
+  ASSERT_EQ(problem->where.size(), 1u);
+  EXPECT_LT((problem->where[0] - free_end).norm(), 0.01);
+  // It begins on an edge of the cube, and gives the face on the other side a fifth side.
+  EXPECT_EQ(count(d, Kind::OddSides), 1);
+  EXPECT_EQ(d.problems.size(), 2u) << all_messages(d);
+}
+
+// The unit square, and lines on it.
+class DrawnOnASquare : public ::testing::TestWithParam<int> {
+ protected:
+  DrawnOnASquare() : surface_(square(GetParam())) {}
+  static TriangleSurface square(int n) {
+    TriangleSurface s = repaired(grid(n, n));
+    for (Vec3& p : s.points) p /= n;
+    return s;
+  }
+  DrawnStroke line(const Vec2& a, const Vec2& b, double height = 0.005) const {
+    DrawnStroke s;
+    for (int i = 0; i <= 10; ++i) {
+      const Vec2 p = a + i / 10.0 * (b - a);
+      s.points.push_back(Vec3(p.x(), p.y(), height * (i % 2)));
+    }
+    return s;
+  }
+  DrawnLayout drawn(const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options = {}) {
+    DrawnLayout d = layout_of(surface_, strokes, options);
+    expect_sound(surface_, d.layout);
+    return d;
+  }
+  TriangleSurface surface_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Resolutions, DrawnOnASquare, ::testing::Values(1, 2, 7, 40));
+
+TEST_P(DrawnOnASquare, WithoutStrokesItIsOneQuad) {
+  const DrawnLayout d = drawn({});
+  EXPECT_EQ(all_messages(d), "");
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4}));
+  expect_maps(surface_, d.layout);
+}
+
+TEST_P(DrawnOnASquare, FromBoundaryToBoundary) {
+  // One ends early, one goes on beyond the surface.
+  const DrawnLayout d = drawn({line({0.5, 0.015}, {0.48, 1.03})});
+  EXPECT_EQ(all_messages(d), "");
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4}));
+  for (const PatchLayout::Curve& c : d.layout.curves) {
+    if (c.boundary) continue;
+    EXPECT_NEAR(d.layout.mesh.points[c.points.front()].y() + d.layout.mesh.points[c.points.back()].y(), 1, 1e-12);
+  }
+  expect_maps(surface_, d.layout);
+}
+
+TEST_P(DrawnOnASquare, AStrokeThatCrossesTwoOthers) {
+  const DrawnLayout d = drawn({line({-0.01, 0.3}, {1.01, 0.32}), line({0, 0.7}, {1, 0.69}), line({0.6, 0}, {0.55, 1})});
+  EXPECT_EQ(all_messages(d), "");
+  EXPECT_EQ(d.layout.nodes.size(), 12u);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 4, 4, 4, 4}));
+  expect_maps(surface_, d.layout);
+}
+
+TEST_P(DrawnOnASquare, OvershootsAndGapsAtACurve) {
+  for (const double end : {0.48, 0.495, 0.5, 0.505, 0.52}) {
+    const DrawnLayout d = drawn({line({0, 0.5}, {1, 0.5}), line({0.4, 0}, {0.4, end})});
+    // A T: the face above has five sides.
+    EXPECT_EQ(d.layout.nodes.size(), 4u + 2 + 2) << end;
+    EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 5})) << end;
+    EXPECT_EQ(count(d, Kind::OddSides), 1);
+    EXPECT_EQ(d.problems.size(), 1u) << all_messages(d);
+  }
+  // Farther beyond it dangles.
+  EXPECT_EQ(count(drawn({line({0, 0.5}, {1, 0.5}), line({0.4, 0}, {0.4, 0.6})}), Kind::Dangling), 1);
+  EXPECT_EQ(count(drawn({line({0, 0.5}, {1, 0.5}), line({0.4, 0}, {0.4, 0.4})}), Kind::Dangling), 1);
+}
+
+TEST_P(DrawnOnASquare, TwoStrokesThatMeetEndToEndMakeANode) {
+  const DrawnLayout d = drawn({line({0, 0.5}, {0.495, 0.5}), line({0.505, 0.505}, {1, 0.5})});
+  EXPECT_EQ(d.layout.nodes.size(), 7u);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{5, 5}));
+}
+
+TEST_P(DrawnOnASquare, FiveAndSixSides) {
+  const std::vector<DrawnStroke> one{line({0.5, 0}, {0.5, 1}), line({0, 0.5}, {0.5, 0.5})};
+  DrawnLayout d = drawn(one);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 5}));
+  ASSERT_EQ(d.problems.size(), 1u) << all_messages(d);
+  EXPECT_EQ(d.problems[0].kind, Kind::OddSides);
+  EXPECT_NE(d.problems[0].message.find("5 sides"), std::string::npos);
+  EXPECT_THROW(to_patched_surface(d.layout), Error);
+
+  d = drawn({line({0.5, 0}, {0.5, 1}), line({0, 0.3}, {0.5, 0.3}), line({0, 0.7}, {0.5, 0.7})});
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 4, 6}));
+  EXPECT_EQ(all_messages(d), "");
+  EXPECT_FALSE(d.layout.is_quads());
+  // Cut out, the face of six sides is a disk, which can be mapped to a hexagon.
+  for (int f = 0; f < 4; ++f) {
+    const LayoutFacePart part = cut_out(d.layout, f);
+    const int sides = static_cast<int>(part.sides.size());
+    EXPECT_EQ(sides, d.layout.faces[f].side_count());
+    std::set<int> rim;
+    for (int i = 0; i < sides; ++i) {
+      EXPECT_EQ(part.sides[i].back(), part.sides[(i + 1) % sides].front());
+      rim.insert(part.sides[i].begin(), part.sides[i].end());
+    }
+    for (int h = 0; h < static_cast<int>(part.mesh.opposite.size()); ++h)
+      if (part.mesh.opposite[h] < 0) {
+        EXPECT_TRUE(rim.count(part.mesh.from(h)));
+      }
+    TriangleSurface mesh = part.mesh;
+    std::vector<PointSource> source(mesh.points.size());
+    std::vector<DiskSide> disk;
+    std::vector<Vec2> polygon;
+    for (int i = 0; i < sides; ++i) {
+      disk.push_back({part.sides[i], {}});
+      polygon.push_back(Vec2(std::cos(2 * std::numbers::pi * i / sides), std::sin(2 * std::numbers::pi * i / sides)));
+    }
+    ConvexMap map(mesh);
+    std::vector<int> faces;
+    for (;;) {
+      faces.resize(mesh.faces.size());
+      for (std::size_t k = 0; k < faces.size(); ++k) faces[k] = static_cast<int>(k);
+      const std::vector<int> chords = map.side_chords(faces, disk);
+      if (chords.empty()) break;
+      for (const int h : chords) split_inner_edge(mesh, source, h);
+      connect_half_edges(mesh);
+    }
+    std::vector<std::array<Vec2, 3>> corners(mesh.faces.size());
+    EXPECT_TRUE(map(faces, disk, polygon, corners));
+  }
+}
+
+TEST_P(DrawnOnASquare, AClosedStrokeMakesARing) {
+  DrawnStroke circle;
+  for (int i = 0; i <= 30; ++i) circle.points.push_back(Vec3(0.5 + 0.2 * std::cos(0.205 * i), 0.5 + 0.2 * std::sin(0.205 * i), 0.01));
+  DrawnLayout d = drawn({circle});
+  EXPECT_EQ(count(d, Kind::NotADisk), 1);
+  EXPECT_EQ(count(d, Kind::TooFewSides), 1);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{1, 5}));
+  EXPECT_NE(all_messages(d).find("ring"), std::string::npos);
+  // Joined with the corners, it is the classic of five quads. Where it began is no node.
+  std::vector<DrawnStroke> strokes{circle};
+  for (const double x : {0.0, 1.0})
+    for (const double y : {0.0, 1.0}) strokes.push_back(line({x, y}, {0.5 + 0.1414 * (2 * x - 1), 0.5 + 0.1414 * (2 * y - 1)}));
+  d = drawn(strokes);
+  EXPECT_EQ(all_messages(d), "");
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 4, 4, 4}));
+  if (d.layout.is_quads()) expect_maps(surface_, d.layout);
+}
+
+TEST_P(DrawnOnASquare, StrokesThatCannotBeUsedAreNamed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  DrawnStroke far = line({0, 0.5}, {1, 0.5}), broken = far, endless = far, near = line({0.5, 0}, {0.5, 1});
+  for (Vec3& p : far.points) p.z() = 2;
+  broken.points[4].x() = nan;
+  endless.points[4].z() = infinity;
+  DrawnStroke huge = far;
+  huge.points[3].y() = 1e300;
+  const std::vector<DrawnStroke> strokes{far, broken, endless, huge, {}, {{Vec3(0.5, 0.5, 0)}}, {{Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0)}}, {{Vec3(0.5, 0.5, 0), Vec3(0.505, 0.5, 0)}}, near};
+  const DrawnLayout d = drawn(strokes);
+  ASSERT_EQ(d.problems.size(), 8u) << all_messages(d);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(d.problems[i].stroke, i);
+    EXPECT_EQ(d.problems[i].kind, i == 0 || i == 3 ? Kind::OffSurface : Kind::Unusable);
+    for (const Vec3& p : d.problems[i].where) EXPECT_TRUE(std::isfinite(p.x()));
+  }
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4}));
+}
+
+TEST_P(DrawnOnASquare, StrokesDrawnTwiceAreNamed) {
+  const DrawnStroke a = line({0, 0.5}, {1, 0.5});
+  DrawnStroke shifted = a, back = a;
+  for (Vec3& p : shifted.points) p.y() += 0.003;
+  std::reverse(back.points.begin(), back.points.end());
+  back.points.insert(back.points.begin(), a.points.begin(), a.points.end());
+  for (const std::vector<DrawnStroke>& strokes : {std::vector<DrawnStroke>{a, a}, {a, shifted}, {a, back}, {a, a, a}}) {
+    const DrawnLayout d = drawn(strokes);
+    EXPECT_EQ(count(d, Kind::Overlap), static_cast<int>(strokes.size()) - 1) << all_messages(d);
+    EXPECT_EQ(d.problems.size(), strokes.size() - 1);
+    EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4}));
+  }
+  // Along the boundary.
+  const DrawnLayout d = drawn({line({0.1, -0.005}, {0.9, -0.005})});
+  EXPECT_EQ(count(d, Kind::Overlap), 1);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4}));
+}
+
+TEST_P(DrawnOnASquare, TightOrAsDrawn) {
+  DrawnStroke arch;
+  for (int i = 0; i <= 40; ++i) arch.points.push_back(Vec3(i / 40.0, 0.5 + 0.2 * std::sin(std::numbers::pi * i / 40), 0));
+  arch.points[0].x() += 0.001;
+  const auto curve_of = [](const DrawnLayout& d, int stroke) {
+    for (const PatchLayout::Curve& c : d.layout.curves)
+      if (c.stroke == stroke) {
+        std::vector<Vec3> line;
+        for (const int v : c.points) line.push_back(d.layout.mesh.points[v]);
+        return line;
+      }
+    return std::vector<Vec3>();
+  };
+  for (const Vec3& p : curve_of(drawn({arch}), 0)) EXPECT_NEAR(p.y(), 0.5, 0.002);
+  arch.fit = DrawnStroke::Fit::AsDrawn;
+  for (const Vec3& p : curve_of(drawn({arch}), 0)) EXPECT_NEAR(p.y(), 0.5 + 0.2 * std::sin(std::numbers::pi * p.x()), 0.02);
+  // One that would cut the arch if it were straight is led along it, without a crossing.
+  DrawnStroke above = arch;
+  above.fit = DrawnStroke::Fit::Tight;
+  for (Vec3& p : above.points) p.y() += 0.06;
+  const DrawnLayout d = drawn({arch, above});
+  EXPECT_EQ(all_messages(d), "");
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4, 4, 4}));
+  double length = 0;
+  const std::vector<Vec3> line = curve_of(d, 1);
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  EXPECT_LT(length, 1.075);  // hugs the top of the arch
+  EXPECT_GT(length, 1.02);
+}
+
+TEST_P(DrawnOnASquare, AGivenBoundaryHasNoOtherNodes) {
+  DrawnLayoutOptions options;
+  int middle = -1;
+  for (int v = 0; v < static_cast<int>(surface_.points.size()); ++v) {
+    const Vec3 p = surface_.points[v];
+    if ((p.x() == 0 || p.x() == 1) && (p.y() == 0 || p.y() == 1)) options.boundary_nodes.push_back(v);
+    if (p.x() > 0 && p.x() < 1 && p.y() == 0) middle = v;
+  }
+  const DrawnLayout none = drawn({}, options);
+  EXPECT_EQ(all_messages(none), "");
+  // The nodes are numbered as they are given.
+  for (std::size_t i = 0; i < options.boundary_nodes.size(); ++i) EXPECT_EQ(none.layout.nodes[i], options.boundary_nodes[i]);
+  const DrawnLayout d = drawn({line({0.01, 0.01}, {0.5, 0.99})}, options);
+  EXPECT_EQ(count(d, Kind::BetweenNodes), 1);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{3, 4}));
+  if (middle >= 0) {
+    options.boundary_nodes = {middle};
+    EXPECT_EQ(face_sizes(drawn({}, options).layout), (std::multiset<int>{1}));
+  }
+  options.boundary_nodes = {static_cast<int>(surface_.points.size())};
+  EXPECT_THROW(layout_of(surface_, {}, options), Error);
+}
+
+TEST_P(DrawnOnASquare, TheSameWhereverItStandsAndHoweverLargeItIs) {
+  const std::vector<DrawnStroke> strokes{line({-0.01, 0.3}, {1.01, 0.32}), line({0.4, 0.31}, {0.4, 1})};
+  const DrawnLayout here = drawn(strokes);
+  for (const double scale : {1e-9, 1e-3, 1e6}) {
+    TriangleSurface surface = surface_;
+    std::vector<DrawnStroke> moved = strokes;
+    const Vec3 by = scale * Vec3(20, -40, 10);
+    for (Vec3& p : surface.points) p = scale * p + by;
+    for (DrawnStroke& s : moved)
+      for (Vec3& p : s.points) p = scale * p + by;
+    const DrawnLayout there = layout_of(surface, moved);
+    EXPECT_EQ(face_sizes(there.layout), face_sizes(here.layout));
+    EXPECT_EQ(all_messages(there), all_messages(here));
+    EXPECT_EQ(there.layout.nodes.size(), here.layout.nodes.size());
+  }
+  const DrawnLayout again = drawn(strokes);
+  EXPECT_EQ(again.layout.mesh.faces, here.layout.mesh.faces);
+  for (std::size_t v = 0; v < again.layout.mesh.points.size(); ++v) EXPECT_EQ(again.layout.mesh.points[v], here.layout.mesh.points[v]);
+}
+
+TEST_P(DrawnOnASquare, OptionsOutOfRangeAreRefused) {
+  for (const double bad : {-0.1, 0.6, std::numeric_limits<double>::quiet_NaN()}) {
+    DrawnLayoutOptions options;
+    options.snap = bad;
+    EXPECT_THROW(layout_of(surface_, {}, options), Error);
+  }
+  DrawnLayoutOptions exact;
+  exact.snap = 0;
+  const DrawnLayout d = drawn({line({0, 0.5}, {1, 0.5}, 0)}, exact);
+  EXPECT_EQ(d.layout.nodes.size(), 6u);
+  Context context;
+  context.cancel();
+  EXPECT_THROW(make_layout(surface_, {line({0, 0.5}, {1, 0.5})}, {}, Progress(context)), Error);
+}
+
+TEST(DrawnLayout, AFigureOfEightCrossesItself) {
+  const TriangleSurface surface = unit(sphere(16));
+  const double radius = surface.points[0].norm();
+  DrawnStroke eight;
+  for (int i = 0; i <= 60; ++i) {
+    const double a = 2 * std::numbers::pi * (i + 7.5) / 60;
+    eight.points.push_back(radius * Vec3(0.7 * std::sin(a), 0.5 * std::sin(2 * a), 1).normalized());
+  }
+  const DrawnLayout d = layout_of(surface, {eight});
+  expect_sound(surface, d.layout);
+  EXPECT_EQ(d.layout.nodes.size(), 1u);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{1, 1, 2}));
+  EXPECT_EQ(count(d, Kind::TooFewSides), 3);
+}
+
+TEST(DrawnLayout, LoopsOnATorusAndACylinder) {
+  const auto on_torus = [](double a, double b) { return Vec3((1 + 0.4 * std::cos(b)) * std::cos(a), (1 + 0.4 * std::cos(b)) * std::sin(a), 0.4 * std::sin(b)); };
+  DrawnStroke around, across;
+  for (int i = 0; i <= 40; ++i) {
+    around.points.push_back(on_torus(0.3 + 2 * std::numbers::pi * i / 40, 0.1));
+    across.points.push_back(on_torus(1, 2 + 2 * std::numbers::pi * i / 40));
+  }
+  const TriangleSurface ring = repaired(torus(40, 20, 0.4, 0));
+  DrawnLayout d = layout_of(ring, {around, across});
+  expect_sound(ring, d.layout);
+  EXPECT_EQ(count(d, Kind::TouchesItself), 1);
+  EXPECT_EQ(d.layout.nodes.size(), 1u);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4}));
+  d = layout_of(ring, {across});
+  expect_sound(ring, d.layout);
+  EXPECT_EQ(count(d, Kind::NotADisk), 1);
+
+  const TriangleSurface cylinder = repaired(glued_rectangle(24, 8, false, false));
+  DrawnStroke along;
+  for (int i = 0; i <= 10; ++i) along.points.push_back(Vec3(2 + 0.2 * i, 0.3, 0.02));
+  d = layout_of(cylinder, {along});
+  expect_sound(cylinder, d.layout);
+  EXPECT_EQ(count(d, Kind::TouchesItself), 1);
+  EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{4}));
+  DrawnStroke opposite = along;
+  for (Vec3& p : opposite.points) p.x() *= -1;
+  d = layout_of(cylinder, {along, opposite});
+  expect_sound(cylinder, d.layout);
+  EXPECT_EQ(all_messages(d), "");
+  expect_maps(cylinder, d.layout);
+  d = layout_of(cylinder, {});
+  expect_sound(cylinder, d.layout);
+  EXPECT_EQ(count(d, Kind::NotADisk), 1);
+}
+
+TEST(DrawnLayout, ComponentsApart) {
+  PolygonSoup soup = ball(8);
+  testing::add(soup, ball(8, 2, Vec3(3, 0, 0)));
+  const TriangleSurface surface = repaired(soup);
+  DrawnStroke across;
+  for (int i = 0; i <= 20; ++i) across.points.push_back(Vec3(3 * i / 20.0, 0, 1.02));
+  DrawnLayoutOptions options;
+  options.reach = 0.5;
+  DrawnLayout d = layout_of(surface, {across}, options);
+  expect_sound(surface, d.layout);
+  EXPECT_EQ(count(d, Kind::Disconnected), 1);
+  EXPECT_EQ(count(d, Kind::Uncovered), 2);
+}
+
+TEST(DrawnLayout, WhateverIsScribbledTheLayoutIsSound) {
+  const std::vector<TriangleSurface> surfaces{unit(sphere(8)),           unit(repaired(ball(7, 0.2))), unit(repaired(torus(18, 9))), unit(repaired(cube())),
+                                              unit(repaired(grid(6, 6))), unit(repaired(glued_rectangle(12, 5, false, false)))};
+  for (int seed = 0; seed < 300; ++seed) {
+    TestRandom random(seed);
+    const TriangleSurface& surface = surfaces[seed % surfaces.size()];
+    std::vector<DrawnStroke> strokes;
+    const int strokes_count = 1 + random.below(8);
+    for (int k = 0; k < strokes_count; ++k) {
+      DrawnStroke s;
+      Vec3 p = surface.points[random.below(static_cast<int>(surface.points.size()))];
+      Vec3 way = jitter(random, 0.2);
+      const int length = 2 + random.below(20), kind = random.below(8);
+      for (int i = 0; i < length; ++i) {
+        s.points.push_back(p);
+        way += jitter(random, kind < 4 ? 0.02 : 0.1);
+        p += (kind == 7 ? 3 : 0.5) * way;
+        // Most stay near.
+        if (kind < 6) p = p.normalized() * std::min(p.norm(), 0.5);
+      }
+      if (kind == 3 && !strokes.empty()) s.points.back() = strokes[0].points[strokes[0].points.size() / 2];
+      if (kind == 2) s.points.push_back(s.points[0]);
+      s.fit = random.below(2) ? DrawnStroke::Fit::Tight : DrawnStroke::Fit::AsDrawn;
+      strokes.push_back(s);
+    }
+    SCOPED_TRACE(seed);
+    DrawnLayoutOptions options;
+    options.snap = random.below(5) == 0 ? 0.1 : random.below(5) == 0 ? 0.002 : 0.02;
+    options.reach = 0.6;
+    const DrawnLayout d = layout_of(surface, strokes, options);
+    expect_sound(surface, d.layout);
+    if (::testing::Test::HasFatalFailure()) return;
+    if (d.problems.empty() && d.layout.is_quads()) expect_maps(surface, d.layout);
+  }
+}
+
+}  // namespace
+}  // namespace hybrid_mesh
