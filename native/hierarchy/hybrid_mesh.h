@@ -291,6 +291,7 @@ class HybridMesh {
   void deactivate(int node);
   std::string find_fan_defect(int cap) const;
   std::string find_double_edge(const Operation& operation) const;
+  std::string find_double_edge(int least_level) const;
   std::string find_choice_defect() const;
   // The faces of a level and the loops of their corners (leaf_polygons.h).
   struct Polygons;

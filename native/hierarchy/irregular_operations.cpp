@@ -262,9 +262,9 @@ double irregularity(int quads, bool on_boundary) {
   return off * off + (allowed ? 0 : 1000.0 * off * off);
 }
 
-// The ring between a circle of m vertices and one of n <= m (m + n even), both in the direction of the first, the ring to its left: corner 0 faces corner 0. Every vertex of the
-// smaller circle has an edge to the larger one; where it has t more, it stands at the tip of t quads with two sides each on the larger circle, whose middles have no other quad. The
-// t are chosen by dynamic programming so that vertices are as regular as can be. The circles' counts of quads are raised.
+// The ring between a circle of m vertices and one of n <= m (m + n even), both in the direction of the first, the ring to its left: corner 0 faces corner 0. Every vertex of
+// the smaller circle has an edge to the larger one; where it has t more, it stands at the tip of t quads with two sides each on the larger circle, whose middles have no other
+// quad. The t are chosen by dynamic programming so that vertices are as regular as can be. The circles' counts of quads are raised.
 Tube make_ring(Circle& large, Circle& small) {
   const int m = static_cast<int>(large.corners.size()), n = static_cast<int>(small.corners.size()), surplus = (m - n) / 2;
   Tube ring;

@@ -36,15 +36,16 @@ struct OperationDraft {
 // `count` rings of quads grow on the region's boundary, and a copy of the region closes them: a cube for one quad and one ring, else a tower.
 OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, int count);
 
-// Two disks are removed and their boundaries joined by a tube. The first boundary side of `region_a` faces that of `region_b` with the number `turn` (any integer; modulo their
-// number). Between boundaries of as many sides the tube is one ring of quads, or two where one would join vertices twice; else the rings narrow, with vertices of three to six quads
-// as far as the mesh around has not more.
+// Two disks are removed and their boundaries joined by a tube. The first boundary side of `region_a` faces that of `region_b` with the number `turn` (any integer; modulo
+// their number). Between boundaries of as many sides the tube is one ring of quads, or two where one would join vertices twice; else the rings narrow, with vertices of three
+// to six quads as far as the mesh around has not more.
 OperationDraft connect(const HybridMesh& mesh, const std::vector<int>& region_a, const std::vector<int>& region_b, int turn);
 
 // The quads are removed and nothing takes their place.
 OperationDraft open_boundary(const HybridMesh& mesh, const std::vector<int>& nodes);
 
-// New quads for a disk. Their corners, counter-clockwise, are 0 .. n - 1 for the region's n corners in the order of find_disk_region(mesh, nodes, start), and n .. for new vertices.
+// New quads for a disk. Their corners, counter-clockwise, are 0 .. n - 1 for the region's n corners in the order of find_disk_region(mesh, nodes, start), and n .. for new
+// vertices (as fill_disk names them).
 OperationDraft free_layout(const HybridMesh& mesh, const std::vector<int>& nodes, const std::vector<std::array<int, 4>>& quads, HalfEdge start = -1);
 
 }  // namespace hybrid_mesh

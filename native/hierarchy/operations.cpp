@@ -255,7 +255,17 @@ void HybridMesh::append(Operation op) {
   operations_.push_back(std::move(op));
 }
 
-// Two edges between the same vertices would make a level that is no mesh by its vertices alone.
+// Two edges between the same vertices would make a level that is no mesh by its vertices alone. Of two such edges that operations made, the one of the
+// finer level finds the other; so an operation is looked at again after coarser ones.
+std::string HybridMesh::find_double_edge(int least_level) const {
+  for (const Operation& op : operations_) {
+    if (!op.enabled || op.repatch.level < least_level) continue;
+    const std::string reason = find_double_edge(op);
+    if (!reason.empty()) return reason;
+  }
+  return "";
+}
+
 std::string HybridMesh::find_double_edge(const Operation& op) const {
   const int cap = op.repatch.level;
   for (std::size_t q = 0; q < op.roots.size(); ++q)
@@ -292,7 +302,7 @@ std::string HybridMesh::apply(const Repatch& repatch) {
   const std::size_t old_nodes = nodes_.size(), old_edges = edges_.size(), old_free = free_.size();
   append(std::move(op));
   for (int cap = repatch.level, last = deepest_level(); cap <= last && reason.empty(); ++cap) reason = find_fan_defect(cap);
-  if (reason.empty()) reason = find_double_edge(operations_.back());
+  if (reason.empty()) reason = find_double_edge(repatch.level);
   if (reason.empty() && leaves().empty()) reason = "nothing would be left of the mesh";
   if (reason.empty()) {
     count_leaves();
@@ -325,11 +335,7 @@ std::string HybridMesh::find_choice_defect() const {
     if (!reason.empty()) return reason;
   }
   // An edge made by one operation may double one that another has removed.
-  for (const Operation& op : operations_) {
-    const std::string reason = op.enabled ? find_double_edge(op) : "";
-    if (!reason.empty()) return reason;
-  }
-  return "";
+  return find_double_edge(0);
 }
 
 std::string HybridMesh::set_enabled(const std::vector<bool>& enabled) {

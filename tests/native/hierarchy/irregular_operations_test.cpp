@@ -328,6 +328,42 @@ TEST(IrregularOperations, NoChoiceJoinsTwoVerticesTwice) {
   EXPECT_EQ(mesh.set_enabled({true, false}), "");
 }
 
+TEST(IrregularOperations, NoCoarserOperationDoublesAnEdge) {
+  // The edge from u to w goes, a tube of finer quads makes it again, then quads of the coarser level around would.
+  HybridMesh mesh = square_grid(3);
+  const auto cell = [&](int level, int x, int y) { return block(mesh, level, x, y, x + 1, y + 1)[0]; };
+  const std::vector<int> two{cell(2, 1, 0), cell(2, 1, 1)}, around{cell(2, 0, 1), cell(2, 0, 2), cell(2, 1, 2), cell(2, 2, 2), cell(2, 2, 1)};
+  const VertexId u = mesh.corner(two[1], 0), w = mesh.corner(two[1], 1);
+  const auto from = [&](const std::vector<int>& nodes, VertexId vertex) {
+    const DiskRegion region = find_disk_region(mesh, nodes);
+    return region.boundary[std::find(region.corners.begin(), region.corners.end(), vertex) - region.corners.begin()];
+  };
+  ASSERT_EQ(mesh.apply(free_layout(mesh, two, {{1, 2, 3, 4}, {4, 5, 0, 1}}, from(two, u)).repatch), "");
+  // Side 3 of the finer quad below u begins at u, side 1 of that below w at w's other end.
+  const std::vector<int> a{cell(3, 1, 1)}, b{cell(3, 4, 1)};
+  bool joined = false;
+  for (int turn = 0; turn < 4 && !joined; ++turn) {
+    const OperationDraft tube = connect(mesh, a, b, turn);
+    ASSERT_EQ(tube.reason, "");
+    for (const auto& quad : tube.repatch.quads)
+      for (int s = 0; s < 4; ++s)
+        joined |= quad[s] >= 0 && quad[(s + 1) % 4] >= 0 && tube.repatch.boundary[quad[s]] == u && tube.repatch.boundary[quad[(s + 1) % 4]] == w;
+    if (joined) {
+      ASSERT_EQ(mesh.apply(tube.repatch), "");
+    }
+  }
+  ASSERT_TRUE(joined);
+  const DiskRegion region = find_disk_region(mesh, around, from(around, u));
+  const int n = static_cast<int>(region.corners.size()), at = static_cast<int>(std::find(region.corners.begin(), region.corners.end(), w) - region.corners.begin());
+  ASSERT_EQ(at % 2, 1);
+  // Quads in a fan around u on both sides of the new edge.
+  std::vector<std::array<int, 4>> fan;
+  for (int k = 1; k + 2 < n; k += 2) fan.push_back({0, k, k + 1, k + 2});
+  const std::string reason = mesh.apply(free_layout(mesh, around, fan, from(around, u)).repatch);
+  EXPECT_NE(reason.find("second edge"), std::string::npos) << reason;
+  EXPECT_TRUE(sound_but_for_balance(mesh));
+}
+
 TEST(IrregularOperations, NoChoiceLeavesNothing) {
   HybridMesh mesh = square_grid(1);
   // A quad grows on the boundary, then all others go.
