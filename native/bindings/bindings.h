@@ -12,5 +12,6 @@ void bind_mesh_io(pybind11::module_& module);
 void bind_hierarchy(pybind11::module_& module);
 void bind_remesh(pybind11::module_& module);
 void bind_job(pybind11::module_& module);
+void bind_drawn_layout(pybind11::module_& module);
 
 }  // namespace hybrid_mesh
