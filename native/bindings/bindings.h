@@ -13,5 +13,6 @@ void bind_hierarchy(pybind11::module_& module);
 void bind_subdivision(pybind11::module_& module);  // a method of bind_hierarchy's class
 void bind_remesh(pybind11::module_& module);
 void bind_job(pybind11::module_& module);
+void bind_drawn_layout(pybind11::module_& module);
 
 }  // namespace hybrid_mesh

@@ -10,4 +10,5 @@ PYBIND11_MODULE(_native, module) {
   hybrid_mesh::bind_subdivision(module);
   hybrid_mesh::bind_remesh(module);
   hybrid_mesh::bind_job(module);
+  hybrid_mesh::bind_drawn_layout(module);
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <optional>
 #include <tuple>
 
 #include "base/error.h"
@@ -13,7 +13,9 @@
 #include "layout/curve_tightening.h"
 #include "layout/point_grid.h"
 #include "layout/stroke_projection.h"
+#include "layout/surface_frame.h"
 #include "layout/surface_paths.h"
+#include "layout/vertex_placing.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -21,24 +23,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFinest = 0.0025;     // edges near strokes are not split below this length
 constexpr std::size_t kMostFaces = 400000;  // made by splitting
-
-// The surface scaled to a unit bounding-box diagonal.
-struct Frame {
-  Vec3 centre = Vec3::Zero();
-  double diagonal = 1;
-
-  explicit Frame(const std::vector<Vec3>& points) {
-    if (points.empty()) return;
-    Vec3 low = points[0], high = points[0];
-    for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    centre = 0.5 * low + 0.5 * high;
-    const Vec3 size = high - low;
-    const double largest = size.maxCoeff();
-    if (largest > 0) diagonal = largest * (size / largest).norm();
-  }
-  Vec3 to_unit(const Vec3& p) const { return (p - centre) / diagonal; }
-  Vec3 from_unit(const Vec3& p) const { return centre + diagonal * p; }
-};
 
 // A stroke on the surface, on its way to become curves.
 struct Path {
@@ -69,7 +53,7 @@ struct Junction {
 class LayoutMaker {
  public:
   LayoutMaker(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options, const Progress& progress)
-      : surface_(surface), strokes_(strokes), options_(options), progress_(progress), frame_(surface.points), snap_(options.snap), unit_(scaled(surface, frame_)),
+      : surface_(surface), strokes_(strokes), options_(options), progress_(progress), frame_(surface.points), snap_(options.snap), unit_(frame_.to_unit(surface)),
         curves_(unit_, unit_.points), paths_on_(curves_.mesh(), curves_.points()) {}
 
   DrawnLayout run() {
@@ -93,12 +77,6 @@ class LayoutMaker {
 
  private:
   using Kind = LayoutProblem::Kind;
-
-  static TriangleSurface scaled(const TriangleSurface& surface, const Frame& frame) {
-    TriangleSurface unit = surface;
-    for (Vec3& p : unit.points) p = frame.to_unit(p);
-    return unit;
-  }
 
   void report(Kind kind, const char* message, std::vector<Vec3> where, int stroke) { problems_.push_back({kind, message, std::move(where), stroke, -1}); }
 
@@ -157,8 +135,13 @@ class LayoutMaker {
           seen[p.face] = 1;
           int longest = -1;
           double length = edge_length();
+          const auto length_of = [&](int h) { return (curves_.points()[mesh.to(h)] - curves_.points()[mesh.from(h)]).norm(); };
+          // A region's boundary stays as it is; faces at it cannot become smaller than its edges.
+          const auto is_kept = [&](int h) { return mesh.opposite[h] < 0 && !options_.boundary_nodes.empty(); };
           for (int h = 3 * p.face; h < 3 * p.face + 3; ++h)
-            if (const double l = (curves_.points()[mesh.to(h)] - curves_.points()[mesh.from(h)]).norm(); l > length) length = l, longest = h;
+            if (is_kept(h)) length = std::max(length, length_of(h));
+          for (int h = 3 * p.face; h < 3 * p.face + 3; ++h)
+            if (!is_kept(h) && length_of(h) > length) length = length_of(h), longest = h;
           if (longest >= 0) edges.push_back({-length, mesh.edge[longest]});
         }
       std::sort(edges.begin(), edges.end());
@@ -244,8 +227,9 @@ class LayoutMaker {
       junctions_.push_back(j);
     }
     given_count_ = static_cast<int>(nodes.size());
-    for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h)
-      if (mesh.opposite[h] < 0) boundary_.push_back(mesh.edge[h]);
+    given_.assign(curves_.points().size(), 0);
+    for (const int v : nodes) given_[v] = 1;
+    placing_.emplace(curves_);
   }
 
   const FacePoint& end_of(int path, int end) const { return end == 0 ? paths_[path].points.front() : paths_[path].points.back(); }
@@ -282,7 +266,12 @@ class LayoutMaker {
       if (group[i] == group[j]) continue;
       bool fits = !(a[0] < given_count_ && b[0] < given_count_);
       for (const int x : a)
-        for (const int y : b) fits = fits && (places[x].at - places[y].at).norm() <= 1.5 * snap_;
+        for (const int y : b) {
+          fits = fits && (places[x].at - places[y].at).norm() <= 1.5 * snap_;
+          // A short stroke is not closed.
+          if (x >= given_count_ && y >= given_count_ && ends[x - given_count_].first == ends[y - given_count_].first)
+            fits = fits && paths_[ends[x - given_count_].first].length() > 4 * snap_;
+        }
       if (!fits || !near_on_surface(places[i], places[j])) continue;
       std::vector<int> moved = std::move(b);
       b.clear();
@@ -309,25 +298,6 @@ class LayoutMaker {
         paths_[path].junction[end] = number;
       }
     }
-  }
-
-  // The nearest point on the boundary.
-  FacePoint nearest_on_boundary(const Vec3& p, double most, int* half_edge = nullptr, double* fraction = nullptr) const {
-    FacePoint found;
-    double best = most * most;
-    const EditMesh& mesh = curves_.mesh();
-    for (const int e : boundary_) {
-      const int h = curves_.half_edge(e);
-      const Vec3 from = curves_.points()[mesh.from(h)], along = curves_.points()[mesh.to(h)] - from;
-      const double size = along.squaredNorm(), t = size > 0 ? std::clamp((p - from).dot(along) / size, 0.0, 1.0) : 0;
-      const Vec3 at = from + t * along;
-      if ((p - at).squaredNorm() > best) continue;
-      best = (p - at).squaredNorm();
-      found = {h / 3, at};
-      if (half_edge) *half_edge = h;
-      if (fraction) *fraction = t;
-    }
-    return found;
   }
 
   // Junctions go to the boundary, or to a stroke that passes by, if that is near.
@@ -366,7 +336,7 @@ class LayoutMaker {
         }
       });
       if (other >= 0 && !near_on_surface(j.place, place)) other = -1, best = kInfinity;
-      const FacePoint rim = nearest_on_boundary(p, leaves ? kInfinity : std::min(snap_, best));
+      const FacePoint rim = placing_->nearest_on_boundary(p, leaves ? kInfinity : std::min(snap_, best));
       if (rim.face >= 0 && (leaves || near_on_surface(j.place, rim))) {
         j.place = rim;
         j.boundary = true;
@@ -383,46 +353,12 @@ class LayoutMaker {
 
   // Every junction becomes a vertex.
   void place_junctions() {
-    taken_.assign(curves_.points().size(), 0);
     for (const Junction& j : junctions_)
-      if (j.vertex >= 0) taken_[j.vertex] = 1;
-    for (Junction& j : junctions_) {
-      if (j.vertex < 0) j.vertex = j.boundary ? vertex_on_boundary(j.place) : vertex_inside(j.place);
-      taken_.resize(curves_.points().size(), 0);
-      taken_[j.vertex] = 1;
-    }
+      if (j.vertex >= 0) placing_->take(j.vertex);
+    for (Junction& j : junctions_)
+      if (j.vertex < 0) j.vertex = j.boundary ? placing_->on_boundary(j.place.at) : placing_->inside(j.place);
     for (Path& path : paths_)
       for (FacePoint& p : path.points) p = paths_on_.locate(p.at, p.face);
-  }
-
-  int vertex_on_boundary(const FacePoint& place) {
-    const EditMesh& mesh = curves_.mesh();
-    int h = -1;
-    double t = 0;
-    nearest_on_boundary(place.at, kInfinity, &h, &t);
-    if (t < 0.1 && !taken_[mesh.from(h)]) return mesh.from(h);
-    if (t > 0.9 && !taken_[mesh.to(h)]) return mesh.to(h);
-    const int v = curves_.split_edge(h, std::clamp(t, 0.1, 0.9));
-    boundary_.push_back(mesh.edge[mesh.out[v]]);
-    return v;
-  }
-
-  int vertex_inside(const FacePoint& place) {
-    const EditMesh& mesh = curves_.mesh();
-    const FacePoint p = paths_on_.locate(place.at, place.face);
-    std::array<double, 3> w{};
-    nearest_in_triangle(p.at, paths_on_.corners(p.face), w);
-    for (int i = 0; i < 3; ++i)
-      if (const int v = mesh.from(3 * p.face + i); w[i] > 0.9 && !taken_[v] && !mesh.is_boundary(v)) return v;
-    for (int i = 0; i < 3; ++i) {
-      const int h = 3 * p.face + i;
-      const double t = w[(i + 1) % 3] / (w[i] + w[(i + 1) % 3]);
-      if (w[(i + 2) % 3] < 0.08 && mesh.opposite[h] >= 0 && t > 0.1 && t < 0.9) return curves_.split_edge(h, t);
-    }
-    double sum = 0;
-    for (double& x : w) sum += x = std::max(x, 0.05);
-    for (double& x : w) x /= sum;
-    return curves_.split_face(p.face, w);
   }
 
   // --- curves ----------------------------------------------------------------------------------------------------------------------
@@ -473,16 +409,13 @@ class LayoutMaker {
   // How much a node may be moved onto another: nodes given, corners, the boundary, others.
   int rank(int v) const {
     if (!curves_.mesh().is_boundary(v)) return 0;
-    for (int i = 0; i < given_count_; ++i)
-      if (junctions_[i].vertex == v) return 2;
-    return 1;
+    return v < static_cast<int>(given_.size()) && given_[v] ? 2 : 1;
   }
 
   // Takes out what is too small to be meant: overshoots, pieces between nodes that are drawn as one, loops, and slips of strokes that cross on their way to a common node.
   void clean() {
     curves_.spread();
     moved_.assign(curves_.points().size(), 0);
-    taken_.resize(curves_.points().size(), 0);
     do {
       while (slide_boundary_nodes() || contract_short_curves()) progress_.check();
     } while (remove_slips());
@@ -543,7 +476,7 @@ class LayoutMaker {
   }
 
   // A node where two strokes cross and nothing else happens.
-  bool is_crossing(int v) const { return curves_.degree(v) == 4 && !taken_[v] && !curves_.mesh().is_boundary(v); }
+  bool is_crossing(int v) { return curves_.degree(v) == 4 && !placing_->is_taken(v) && !curves_.mesh().is_boundary(v); }
   int other_end(int c, int v) const { return curves_.curve(c).start == v ? curves_.curve(c).end : curves_.curve(c).start; }
 
   // Small loops with nothing inside go. So do two curves side by side with nothing in between, from a node to where their strokes cross once more: the crossing goes to the node.
@@ -591,7 +524,7 @@ class LayoutMaker {
     const EditMesh& mesh = curves_.mesh();
     const auto is_node = [&](int v) { return rank(v) == 2 || curves_.degree(v) > 0; };
     std::vector<int> nodes;
-    for (const int e : boundary_)
+    for (const int e : placing_->boundary_edges())
       if (const int v = mesh.from(curves_.half_edge(e)); is_node(v)) nodes.push_back(v);
     std::sort(nodes.begin(), nodes.end());
     bool any = false;
@@ -634,10 +567,12 @@ class LayoutMaker {
       fixed.push_back(!curves_.curve(c).alive || paths_[curves_.curve(c).stroke].fit == DrawnStroke::Fit::AsDrawn);
     }
     std::vector<char> small(layout.curves.size(), 0);
-    for (const PatchLayout::Face& face : layout.faces)
-      if (face.side_count() < 3)
-        for (const auto& cycle : face.cycles)
-          for (const PatchLayout::Side& s : cycle) small[s.curve] = 1;
+    for (const PatchLayout::Face& face : layout.faces) {
+      if (!face.is_disk() || face.side_count() > 2) continue;
+      const std::vector<PatchLayout::Side>& cycle = face.cycles[0];
+      if (cycle.size() == 2 && cycle[0].curve == cycle[1].curve) continue;  // all around one curve
+      for (const PatchLayout::Side& s : cycle) small[s.curve] = 1;
+    }
     for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = fixed[c] || small[number[c]];
     CurveTightener(curves_, fixed).tighten_all(progress_);
   }
@@ -645,8 +580,15 @@ class LayoutMaker {
   DrawnLayout finish() {
     DrawnLayout out;
     out.layout = make_patch_layout(surface_, curves_, boundary_nodes());
+    std::vector<char> found(strokes_.size(), 0);
+    for (const LayoutProblem& p : problems_) found[p.stroke] = 1;
     for (PatchLayout::Curve& c : out.layout.curves)
-      if (c.stroke >= 0) c.stroke = paths_[c.stroke].stroke;
+      if (c.stroke >= 0) found[c.stroke = paths_[c.stroke].stroke] = 1;
+    for (const Path& path : paths_) {
+      if (found[path.stroke]) continue;
+      found[path.stroke] = 1;
+      report(Kind::Unusable, "nothing is left of a stroke: it is too small", line_of(path), path.stroke);
+    }
     for (LayoutProblem& p : problems_) {
       for (Vec3& x : p.where) x = frame_.from_unit(x);
       out.problems.push_back(std::move(p));
@@ -659,7 +601,7 @@ class LayoutMaker {
   const std::vector<DrawnStroke>& strokes_;
   const DrawnLayoutOptions& options_;
   const Progress& progress_;
-  Frame frame_;
+  SurfaceFrame frame_;
   double snap_;
   TriangleSurface unit_;
   SurfaceCurves curves_;
@@ -668,8 +610,8 @@ class LayoutMaker {
   std::vector<Junction> junctions_;   // first those of the boundary
   int given_count_ = 0;
   bool given_nodes_ = false;
-  std::vector<int> boundary_;         // edges
-  std::vector<char> taken_;           // per vertex: by a junction
+  std::vector<char> given_;           // per vertex: a node of the boundary from the start
+  std::optional<VertexPlacing> placing_;
   std::vector<double> moved_;         // per vertex: how far ends were moved to it
   std::vector<LayoutProblem> problems_;
 };

@@ -14,7 +14,7 @@ struct PatchLayout {
   struct Curve {
     int from = -1, to = -1;   // nodes
     std::vector<int> points;  // of the mesh, both ends included
-    int stroke = -1;          // the stroke that it is a piece of; -1 on the surface's boundary
+    int stroke = -1;          // the stroke that it is a piece of; -1: none
     bool boundary = false;    // a piece of the surface's boundary, which has the surface on its left
   };
   struct Side {

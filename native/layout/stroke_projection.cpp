@@ -12,6 +12,7 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kMostSamples = 50000;  // a stroke
+constexpr double kDensest = 0.2;     // of a step
 
 bool is_finite(const Vec3& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); }
 
@@ -114,7 +115,12 @@ std::vector<ProjectedStroke> StrokeProjection::operator()(int number, const std:
   std::vector<Vec3> stroke, finite;
   for (const Vec3& p : drawn) {
     if (is_finite(p)) finite.push_back(p);
-    if (stroke.empty() || (p - stroke.back()).norm() > 1e-9) stroke.push_back(p);
+    // Points much closer than the steps tell nothing; the last one counts.
+    if (!stroke.empty() && (p - stroke.back()).norm() < kDensest * options_.step) {
+      if (&p == &drawn.back() && stroke.size() > 1) stroke.back() = p;
+      continue;
+    }
+    stroke.push_back(p);
   }
   if (finite.size() < drawn.size()) {
     problems.push_back({Kind::Unusable, "a stroke has points that are not finite", finite, number, -1});

@@ -137,6 +137,66 @@ SurfaceCurves::FacePolygon SurfaceCurves::polygon(int f) const {
   return out;
 }
 
+void SurfaceCurves::find_cells(int f, FaceCells& out) const {
+  out.gaps.clear(), out.corners.clear();
+  bool empty = true;
+  for (int h = 3 * f; h < 3 * f + 3; ++h) empty = empty && on_edge_[mesh_.edge[h]].empty();
+  if (empty) {
+    for (int h = 3 * f; h < 3 * f + 3; ++h) {
+      if (mesh_.opposite[h] >= 0 && along_[mesh_.edge[h]] < 0) out.gaps.push_back({h, 0, -1, 0, 1, 0});
+      out.corners.push_back({h, 0, 0});
+    }
+    return;
+  }
+  const FacePolygon poly = polygon(f);
+  // A cell is told by the sides of the chords on which it lies.
+  std::vector<std::vector<char>> sides;
+  const auto cell = [&](std::vector<char> of) {
+    const auto at = std::find(sides.begin(), sides.end(), of);
+    if (at != sides.end()) return static_cast<int>(at - sides.begin());
+    sides.push_back(std::move(of));
+    return static_cast<int>(sides.size()) - 1;
+  };
+  const int count = static_cast<int>(poly.stations.size());
+  std::vector<char> of(poly.chords.size());
+  int side = 0;
+  for (int s = 0; s < count; ++s) {
+    const Station &here = poly.stations[s], &next = poly.stations[(s + 1) % count];
+    if (here.corner >= 0) {
+      side = here.corner;
+      // The chords that end here, counter-clockwise: by how far on their other ends are.
+      std::vector<std::pair<int, int>> ends;
+      for (std::size_t k = 0; k < poly.chords.size(); ++k) {
+        const Chord& c = poly.chords[k];
+        if (c.from == s || c.to == s) ends.push_back({((c.from == s ? c.to : c.from) - s + count) % count, static_cast<int>(k)});
+      }
+      std::sort(ends.begin(), ends.end());
+      for (std::size_t k = 0; k < of.size(); ++k) {
+        const auto [low, high] = std::minmax(poly.chords[k].from, poly.chords[k].to);
+        of[k] = s > low && s < high;
+      }
+      for (int rank = 0; rank <= static_cast<int>(ends.size()); ++rank) {
+        for (int k = 0; k < static_cast<int>(ends.size()); ++k) {
+          const Chord& c = poly.chords[ends[k].second];
+          of[ends[k].second] = (k >= rank) == (std::min(c.from, c.to) == s);
+        }
+        out.corners.push_back({3 * f + side, rank, cell(of)});
+      }
+    }
+    const int h = 3 * f + side, e = mesh_.edge[h];
+    if (mesh_.opposite[h] < 0 || along_[e] >= 0) continue;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const auto [low, high] = std::minmax(poly.chords[k].from, poly.chords[k].to);
+      of[k] = s >= low && s < high;
+    }
+    const bool up = mesh_.from(h) < mesh_.to(h);
+    const int crossing = up ? here.crossing : next.crossing;
+    int rank = 0;
+    if (crossing >= 0) rank = static_cast<int>(std::find(on_edge_[e].begin(), on_edge_[e].end(), crossing) - on_edge_[e].begin()) + 1;
+    out.gaps.push_back({h, rank, crossing, here.corner >= 0 ? 0 : here.weights[(side + 1) % 3], next.corner >= 0 ? 1 : next.weights[(side + 1) % 3], cell(of)});
+  }
+}
+
 bool SurfaceCurves::alternate(const Chord& a, const Chord& b) {
   const int low = std::min(a.from, a.to), high = std::max(a.from, a.to);
   if (b.from == low || b.from == high || b.to == low || b.to == high) return false;
@@ -525,6 +585,16 @@ int SurfaceCurves::add(int start, int end, const std::vector<Step>& steps, int s
   if (previous >= 0 || set_along(c)) return c;
   remove(c);
   return -1;
+}
+
+int SurfaceCurves::add(int start, int end, const std::vector<Gap>& gaps, int stroke) {
+  const int c = static_cast<int>(curves_.size());
+  curves_.push_back({start, end, -1, -1, -1, stroke, true});
+  ++degree_[start], ++degree_[end];
+  int previous = -1;
+  for (const Gap& g : gaps) previous = insert(c, previous, g.half_edge, g.below, 0.5 * (g.from + g.to));
+  for (const Gap& g : gaps) spread(mesh_.edge[g.half_edge]);
+  return simplify(c) ? c : -1;
 }
 
 void SurfaceCurves::resolve_crossings(const Progress& progress) {

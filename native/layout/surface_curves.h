@@ -54,6 +54,23 @@ class SurfaceCurves {
     double t;
   };
 
+  // A part of a face's side between two crossings: `from` and `to` are fractions of the half-edge, `below` the crossing that it follows in the edge's list (-1: none).
+  struct Gap {
+    int half_edge, rank, below;  // rank: its number on the edge, from the smaller vertex on
+    double from, to;
+    int cell;
+  };
+  // A part of a corner of a face, counter-clockwise after `rank` curve ends there; the corner is where the half-edge `spoke` starts.
+  struct CornerGap {
+    int spoke, rank;
+    int cell;
+  };
+  // The parts into which curves divide a face. Sides that are curves or boundary have no gaps.
+  struct FaceCells {
+    std::vector<Gap> gaps;
+    std::vector<CornerGap> corners;
+  };
+
   // `points`: where the surface's points are taken to lie. Sources are combinations of the surface's points.
   SurfaceCurves(const TriangleSurface& surface, std::vector<Vec3> points);
 
@@ -77,6 +94,7 @@ class SurfaceCurves {
   std::vector<Vec3> polyline(int c) const;
   // The ends of curves at a vertex, counter-clockwise; at the boundary from the clockwise-most on.
   std::vector<End> ends_at(int v) const;
+  void find_cells(int f, FaceCells& cells) const;
 
   // --- growth ------------------------------------------------------------------------------------------------------------------
   // New vertices; curves are led past them on the side where they are. Weights of the face's corners in (0, 1); t from the half-edge's start.
@@ -89,6 +107,8 @@ class SurfaceCurves {
   // Adds a curve that may cross others and itself. Steps beside its ends and there and back are left out. Returns -1 if nothing is left, or if what is left is an edge that is a
   // curve already.
   int add(int start, int end, const std::vector<Step>& steps, int stroke);
+  // Adds a curve through gaps: it crosses no other. Returns -1 if nothing is left of it.
+  int add(int start, int end, const std::vector<Gap>& gaps, int stroke);
   // Puts a vertex wherever two curves cross.
   void resolve_crossings(const Progress& progress);
   void remove(int c);

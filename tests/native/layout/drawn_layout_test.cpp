@@ -5,22 +5,22 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
+#include <limits>
+#include <numbers>
 #include <set>
 
 #include "drawn_strokes.h"
-#include "layouts.h"
+#include "layout_checks.h"
 #include "models.h"
 #include "parameterization/convex_map.h"
-#include "parameterization/initial_map.h"
-#include "surface/closest_point.h"
 
 namespace hybrid_mesh {
 namespace {
 
 using testing::ball;
 using testing::cube_strokes;
-using testing::diagonal;
+using testing::expect_maps;
+using testing::expect_sound;
 using testing::jitter;
 using testing::layout_of;
 using testing::repaired;
@@ -39,89 +39,25 @@ int count(const DrawnLayout& d, Kind kind) {
   return static_cast<int>(std::count_if(d.problems.begin(), d.problems.end(), [&](const LayoutProblem& p) { return p.kind == kind; }));
 }
 
+// Every curve is a piece of a stroke or of the boundary; of every stroke there is a curve, or it is said why not.
+void expect_origins(const DrawnLayout& d, int strokes) {
+  std::set<int> found;
+  for (const PatchLayout::Curve& c : d.layout.curves) {
+    EXPECT_EQ(c.boundary, c.stroke < 0);
+    EXPECT_LT(c.stroke, strokes);
+    found.insert(c.stroke);
+  }
+  for (const LayoutProblem& p : d.problems) {
+    found.insert(p.stroke);
+    EXPECT_FALSE(p.message.empty());
+  }
+  for (int s = 0; s < strokes; ++s) EXPECT_TRUE(found.count(s)) << "stroke " << s << " is lost";
+}
+
 std::multiset<int> face_sizes(const PatchLayout& l) {
   std::multiset<int> sizes;
   for (const auto& f : l.faces) sizes.insert(f.side_count());
   return sizes;
-}
-
-// Whatever was drawn: curves are disjoint, lie on the surface, bound the faces that name them, and Euler's formula holds.
-void expect_sound(const TriangleSurface& surface, const PatchLayout& l) {
-  const double size = diagonal(surface);
-  std::set<int> inner, nodes(l.nodes.begin(), l.nodes.end());
-  ASSERT_EQ(nodes.size(), l.nodes.size());
-  std::map<std::pair<int, int>, int> half_edge;
-  for (int h = 0; h < static_cast<int>(l.mesh.opposite.size()); ++h) half_edge[{l.mesh.from(h), l.mesh.to(h)}] = h;
-  std::size_t on_curves = 0, marked = 0;
-  for (const int c : l.along) marked += c >= 0;
-  for (int c = 0; c < static_cast<int>(l.curves.size()); ++c) {
-    const PatchLayout::Curve& curve = l.curves[c];
-    ASSERT_GE(curve.points.size(), 2u);
-    EXPECT_EQ(curve.points.front(), l.nodes[curve.from]);
-    EXPECT_EQ(curve.points.back(), l.nodes[curve.to]);
-    EXPECT_EQ(curve.boundary, curve.stroke < 0);
-    for (std::size_t k = 1; k < curve.points.size(); ++k) {
-      if (k + 1 < curve.points.size()) {
-        EXPECT_TRUE(inner.insert(curve.points[k]).second) << "two curves meet outside nodes";
-        EXPECT_FALSE(nodes.count(curve.points[k]));
-      }
-      const auto at = half_edge.find({curve.points[k - 1], curve.points[k]});
-      ASSERT_NE(at, half_edge.end());
-      EXPECT_EQ(l.along[at->second], c);
-      EXPECT_EQ(l.mesh.opposite[at->second] < 0, curve.boundary);
-      on_curves += curve.boundary ? 1 : 2;
-    }
-  }
-  EXPECT_EQ(marked, on_curves);
-  const SurfaceDistanceQuery query(surface);
-  for (std::size_t v = 0; v < l.mesh.points.size(); ++v) {
-    if (!inner.count(static_cast<int>(v)) && !nodes.count(static_cast<int>(v))) continue;
-    EXPECT_LT(std::sqrt(query.closest(l.mesh.points[v]).squared_distance), 1e-12 * size);
-  }
-  double before = 0, after = 0;
-  for (const auto& f : surface.faces) before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
-  for (const auto& f : l.mesh.faces) after += (l.mesh.points[f[1]] - l.mesh.points[f[0]]).cross(l.mesh.points[f[2]] - l.mesh.points[f[0]]).norm();
-  EXPECT_NEAR(after, before, 1e-9 * before);
-  // Points of every triangle lie on its face of the surface.
-  for (std::size_t f = 0; f < l.mesh.faces.size(); ++f)
-    for (const int v : l.mesh.faces[f]) {
-      const std::array<double, 3> w = weights_in_face(l.source[v], surface.faces[l.mesh.source_face[f]]);
-      EXPECT_NEAR(w[0] + w[1] + w[2], 1, 1e-9);
-    }
-
-  // Sides: each curve bounds a face on either side, once; cycles close up.
-  std::vector<std::array<int, 2>> seen(l.curves.size(), {0, 0});
-  int total = 0;
-  for (int f = 0; f < static_cast<int>(l.faces.size()); ++f) {
-    total += l.faces[f].euler;
-    for (const auto& cycle : l.faces[f].cycles)
-      for (std::size_t k = 0; k < cycle.size(); ++k) {
-        const PatchLayout::Side &s = cycle[k], &next = cycle[(k + 1) % cycle.size()];
-        ++seen[s.curve][s.forward];
-        EXPECT_EQ(l.start({s.curve, !s.forward}), l.start(next));
-        const std::vector<int> points = l.points(s);
-        EXPECT_EQ(l.face[half_edge.at({points[0], points[1]}) / 3], f);
-      }
-  }
-  for (std::size_t c = 0; c < seen.size(); ++c) EXPECT_EQ(seen[c], (std::array<int, 2>{l.curves[c].boundary ? 0 : 1, 1}));
-  // Euler number of the surface: the faces', glued along curves at nodes.
-  long euler = static_cast<long>(surface.points.size()) + static_cast<long>(surface.faces.size());
-  long halves = 0, open = 0;
-  for (const int o : surface.opposite) ++halves, open += o < 0;
-  euler -= (halves + open) / 2;
-  EXPECT_EQ(total - static_cast<long>(l.curves.size()) + static_cast<long>(l.nodes.size()), euler);
-}
-
-void expect_maps(const TriangleSurface& surface, const PatchLayout& layout) {
-  ASSERT_TRUE(layout.is_quads());
-  PatchedSurface patched = to_patched_surface(layout);
-  testing::expect_layout(surface, patched);
-  Context context;
-  const auto corners = map_patches(patched, Progress(context));
-  for (const auto& c : corners) {
-    const Vec2 a = c[1] - c[0], b = c[2] - c[0];
-    EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0);
-  }
 }
 
 std::vector<DrawnStroke> sphere_cube(double gap, double noise, std::uint64_t seed, double radius = 1) {
@@ -209,6 +145,7 @@ class DrawnOnASquare : public ::testing::TestWithParam<int> {
   DrawnLayout drawn(const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options = {}) {
     DrawnLayout d = layout_of(surface_, strokes, options);
     expect_sound(surface_, d.layout);
+    expect_origins(d, static_cast<int>(strokes.size()));
     return d;
   }
   TriangleSurface surface_;
@@ -410,6 +347,16 @@ TEST_P(DrawnOnASquare, AGivenBoundaryHasNoOtherNodes) {
   EXPECT_EQ(all_messages(none), "");
   // The nodes are numbered as they are given.
   for (std::size_t i = 0; i < options.boundary_nodes.size(); ++i) EXPECT_EQ(none.layout.nodes[i], options.boundary_nodes[i]);
+  // From node to node: the boundary itself is as it was.
+  const DrawnLayout diagonal = drawn({line({0.01, 0.01}, {0.98, 1})}, options);
+  EXPECT_EQ(face_sizes(diagonal.layout), (std::multiset<int>{3, 3}));
+  const auto boundary = [](const TriangleSurface& s) {
+    std::set<std::pair<double, double>> points;
+    for (int h = 0; h < static_cast<int>(s.opposite.size()); ++h)
+      if (s.opposite[h] < 0) points.insert({s.points[s.from(h)].x(), s.points[s.from(h)].y()});
+    return points;
+  };
+  EXPECT_EQ(boundary(diagonal.layout.mesh), boundary(surface_));
   const DrawnLayout d = drawn({line({0.01, 0.01}, {0.5, 0.99})}, options);
   EXPECT_EQ(count(d, Kind::BetweenNodes), 1);
   EXPECT_EQ(face_sizes(d.layout), (std::multiset<int>{3, 4}));
@@ -551,6 +498,7 @@ TEST(DrawnLayout, WhateverIsScribbledTheLayoutIsSound) {
     options.reach = 0.6;
     const DrawnLayout d = layout_of(surface, strokes, options);
     expect_sound(surface, d.layout);
+    expect_origins(d, strokes_count);
     if (::testing::Test::HasFatalFailure()) return;
     if (d.problems.empty() && d.layout.is_quads()) expect_maps(surface, d.layout);
   }

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layouts drawn on a mesh.
+#include "layout/drawn_layout.h"
+
+#include <cmath>
+#include <limits>
+
+#include "bindings/bindings.h"
+#include "bindings/conversions.h"
+#include "bindings/job.h"
+#include "surface/repair.h"
+
+namespace py = pybind11;
+
+namespace hybrid_mesh {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::InvalidInput, message); }
+
+// A copy of an (n, 3) array of numbers, which need not be finite.
+std::vector<Vec3> points_from_array(const py::handle& object, const std::string& name) {
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
+  if (!array) {
+    PyErr_Clear();
+    refuse(name + " must be an array of numbers");
+  }
+  std::vector<Vec3> points;
+  if (array.size() == 0) return points;
+  if (array.ndim() != 2 || array.shape(1) != 3) refuse(name + " must have the shape (n, 3), not " + py::str(array.attr("shape")).cast<std::string>());
+  const double* p = array.data();
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) points.push_back(Vec3(p[3 * i], p[3 * i + 1], p[3 * i + 2]));
+  return points;
+}
+
+DrawnStroke stroke_from_dict(const py::handle& object, std::size_t number) {
+  const std::string name = "stroke " + std::to_string(number);
+  if (!py::isinstance<py::dict>(object)) refuse(name + " must be a dict");
+  const auto dict = py::reinterpret_borrow<py::dict>(object);
+  DrawnStroke stroke;
+  for (const auto& [key, value] : dict) {
+    const std::string word = py::isinstance<py::str>(key) ? key.cast<std::string>() : "";
+    if (word == "points") {
+      stroke.points = points_from_array(value, "points of " + name);
+    } else if (word == "fit") {
+      const std::string fit = py::isinstance<py::str>(value) ? value.cast<std::string>() : "";
+      if (fit != "tight" && fit != "drawn") refuse("the fit of " + name + " must be 'tight' or 'drawn', not " + py::repr(value).cast<std::string>());
+      stroke.fit = fit == "tight" ? DrawnStroke::Fit::Tight : DrawnStroke::Fit::AsDrawn;
+    } else {
+      refuse(name + " has an entry " + py::repr(key).cast<std::string>() + ", which means nothing");
+    }
+  }
+  if (!dict.contains("points")) refuse(name + " has no points");
+  return stroke;
+}
+
+// Faces given as (m, n) indices, or as what numpy makes of them.
+PolygonSoup soup_from_faces(const py::object& points, const py::object& faces) {
+  const auto array = py::array::ensure(faces);
+  if (!array || array.ndim() != 2 || array.shape(1) < 3) {
+    PyErr_Clear();
+    refuse("faces must have the shape (m, 3)");
+  }
+  std::vector<std::int64_t> offsets;
+  for (py::ssize_t f = 0; f <= array.shape(0); ++f) offsets.push_back(f * array.shape(1));
+  return soup_from_arrays(points, to_array(offsets), array.attr("ravel")());
+}
+
+py::array_t<double> positions(const PatchLayout& layout, const std::vector<int>& points) {
+  std::vector<Vec3> out;
+  for (const int v : points) out.push_back(layout.mesh.points[v]);
+  return rows_to_array<double>(out);
+}
+
+py::dict to_dict(const DrawnLayout& drawn) {
+  const PatchLayout& layout = drawn.layout;
+  py::list curves, faces, problems;
+  for (const PatchLayout::Curve& c : layout.curves) {
+    py::dict curve;
+    curve["nodes"] = py::make_tuple(c.from, c.to);
+    curve["points"] = positions(layout, c.points);
+    curve["stroke"] = c.stroke;
+    curve["boundary"] = c.boundary;
+    curves.append(curve);
+  }
+  for (const PatchLayout::Face& f : layout.faces) {
+    // The rims of a face that is no disk follow one another.
+    py::list sides;
+    for (const auto& cycle : f.cycles)
+      for (const PatchLayout::Side& s : cycle) sides.append(py::make_tuple(s.curve, s.forward));
+    faces.append(sides);
+  }
+  for (const LayoutProblem& p : drawn.problems) {
+    py::dict problem;
+    problem["kind"] = name_of(p.kind);
+    problem["message"] = p.message;
+    problem["points"] = rows_to_array<double>(p.where);
+    problem["stroke"] = p.stroke;
+    problem["face"] = p.face;
+    problems.append(problem);
+  }
+  py::dict result;
+  result["nodes"] = positions(layout, layout.nodes);
+  result["curves"] = curves;
+  result["faces"] = faces;
+  result["problems"] = problems;
+  return result;
+}
+
+py::dict make_layout_from_arrays(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
+  const PolygonSoup soup = soup_from_faces(points, faces);
+  std::vector<DrawnStroke> drawn;
+  for (const auto& s : strokes) drawn.push_back(stroke_from_dict(s, drawn.size()));
+  DrawnLayoutOptions options;
+  options.snap = snap;
+  return to_dict(run_interruptibly([&](Context& context) {
+    RepairReport report;
+    const Progress progress(context);
+    return make_layout(repair(soup, RepairOptions(), report, progress.part(0, 0.2)), drawn, options, progress.part(0.2, 1));
+  }));
+}
+
+}  // namespace
+
+void bind_drawn_layout(py::module_& module) {
+  using py::arg;
+  module.def("make_layout", &make_layout_from_arrays, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
+             "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces and problems. A stroke is a dict of points (n, 3) and fit, 'tight' or "
+             "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise.");
+}
+
+}  // namespace hybrid_mesh
