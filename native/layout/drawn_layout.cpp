@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "layout/boundary_corners.h"
+#include "layout/curve_cleaning.h"
 #include "layout/curve_tightening.h"
 #include "layout/point_grid.h"
 #include "layout/stroke_projection.h"
@@ -68,7 +69,7 @@ class LayoutMaker {
     progress_(0.5);
     draw();
     curves_.resolve_crossings(progress_);
-    clean();
+    clean_curves(surface_, curves_, {snap_, boundary_nodes(), vertices()}, progress_);
     progress_(0.7);
     tighten();
     progress_(0.9);
@@ -106,17 +107,12 @@ class LayoutMaker {
         path.stroke = s;
         path.fit = strokes_[s].fit;
         path.at_boundary = piece.at_boundary;
-        for (const Vec3& p : piece.points) {
-          path.at.push_back(path.points.empty() ? 0 : path.at.back() + (p - path.points.back().at).norm());
-          path.points.push_back({-1, p});
-        }
+        path.points = std::move(piece.points);
+        path.at.push_back(0);
+        for (std::size_t i = 1; i < path.points.size(); ++i) path.at.push_back(path.at.back() + (path.points[i].at - path.points[i - 1].at).norm());
         paths_.push_back(std::move(path));
       }
     }
-    const SurfaceDistanceQuery query(unit_);
-    int guess = -1;
-    for (Path& path : paths_)
-      for (FacePoint& p : path.points) p.face = guess = query.closest(p.at, guess).face;
   }
 
   // Splits faces under strokes until curves can follow them: within a face, a curve is straight.
@@ -215,6 +211,9 @@ class LayoutMaker {
     const EditMesh& mesh = curves_.mesh();
     given_nodes_ = !options_.boundary_nodes.empty();
     std::vector<int> nodes = options_.boundary_nodes;
+    std::vector<int> sorted = nodes;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) throw Error(ErrorCode::InvalidInput, "a node of the boundary is given twice");
     for (const int v : nodes)
       if (v < 0 || v >= static_cast<int>(surface_.points.size()) || !mesh.is_boundary(v))
         throw Error(ErrorCode::InvalidInput, "a node is given at the point " + std::to_string(v) + ", which is not on the surface's boundary");
@@ -227,8 +226,6 @@ class LayoutMaker {
       junctions_.push_back(j);
     }
     given_count_ = static_cast<int>(nodes.size());
-    given_.assign(curves_.points().size(), 0);
-    for (const int v : nodes) given_[v] = 1;
     placing_.emplace(curves_);
   }
 
@@ -401,158 +398,19 @@ class LayoutMaker {
       end_at(junctions_[path.junction[1]].vertex);
       if (!joined)
         report(Kind::Disconnected, "a stroke goes from one component of the surface to another", line_of(path), path.stroke);
-      else if (pieces == 0)
+      else if (pieces == 0 && path.junction[0] != path.junction[1])
         report(Kind::Overlap, "nothing is left of a stroke: another one joins the same nodes there", line_of(path), path.stroke);
     }
   }
 
-  // How much a node may be moved onto another: nodes given, corners, the boundary, others.
-  int rank(int v) const {
-    if (!curves_.mesh().is_boundary(v)) return 0;
-    return v < static_cast<int>(given_.size()) && given_[v] ? 2 : 1;
+  std::vector<int> vertices() const {
+    std::vector<int> all;
+    for (const Junction& j : junctions_) all.push_back(j.vertex);
+    return all;
   }
-
-  // Takes out what is too small to be meant: overshoots, pieces between nodes that are drawn as one, loops, and slips of strokes that cross on their way to a common node.
-  void clean() {
-    curves_.spread();
-    moved_.assign(curves_.points().size(), 0);
-    do {
-      while (slide_boundary_nodes() || contract_short_curves()) progress_.check();
-    } while (remove_slips());
-    // What is left of crossings and of the places where closed strokes begin.
-    for (int v = 0; v < static_cast<int>(curves_.points().size()); ++v) {
-      if (curves_.degree(v) != 2 || curves_.mesh().is_boundary(v)) continue;
-      const auto ends = curves_.ends_at(v);
-      if (curves_.curve(ends[0].curve).stroke == curves_.curve(ends[1].curve).stroke) curves_.dissolve(v);
-    }
-    curves_.spread();
-  }
-
-  void contract(int c, int v) {
-    const int to = curves_.curve(c).start == v ? curves_.curve(c).end : curves_.curve(c).start;
-    moved_[to] = std::max(moved_[to], moved_[v] + curves_.length(c));
-    curves_.contract(c, v);
-    curves_.spread();
-  }
-
-  bool is_small_loop(int c) const {
-    const std::vector<Vec3> line = curves_.polyline(c);
-    return std::all_of(line.begin(), line.end(), [&](const Vec3& p) { return (p - line[0]).norm() < snap_; });
-  }
-
-  // Do two curves lie side by side?
-  bool is_narrow(int c, int d) const {
-    const auto beside = [&](const std::vector<Vec3>& points, const std::vector<Vec3>& line) {
-      return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-        for (std::size_t i = 1; i < line.size(); ++i) {
-          const Vec3 along = line[i] - line[i - 1];
-          const double size = along.squaredNorm(), t = size > 0 ? std::clamp((p - line[i - 1]).dot(along) / size, 0.0, 1.0) : 0;
-          if ((p - line[i - 1] - t * along).norm() < 0.5 * snap_) return true;
-        }
-        return false;
-      });
-    };
-    const std::vector<Vec3> a = curves_.polyline(c), b = curves_.polyline(d);
-    return beside(a, b) && beside(b, a);
-  }
-
-  bool contract_short_curves() {
-    bool any = false;
-    std::vector<std::pair<double, int>> shortest;
-    for (int c = 0; c < curves_.curve_count(); ++c)
-      if (curves_.curve(c).alive && curves_.curve(c).start != curves_.curve(c).end)
-        if (const double length = curves_.length(c); length < snap_) shortest.push_back({length, c});
-    std::sort(shortest.begin(), shortest.end());
-    for (const auto& [length, c] : shortest) {
-      const SurfaceCurves::Curve curve = curves_.curve(c);
-      if (!curve.alive || curve.start == curve.end || curves_.length(c) > length * 1.5 + 1e-9) continue;
-      const auto weight = [&](int x) { return std::tuple(rank(x), curves_.degree(x), -x); };
-      const int v = weight(curve.start) < weight(curve.end) ? curve.start : curve.end;
-      if (rank(v) > 0 || moved_[v] + length > 2 * snap_) continue;
-      contract(c, v);
-      any = true;
-    }
-    return any;
-  }
-
-  // A node where two strokes cross and nothing else happens.
-  bool is_crossing(int v) { return curves_.degree(v) == 4 && !placing_->is_taken(v) && !curves_.mesh().is_boundary(v); }
-  int other_end(int c, int v) const { return curves_.curve(c).start == v ? curves_.curve(c).end : curves_.curve(c).start; }
-
-  // Small loops with nothing inside go. So do two curves side by side with nothing in between, from a node to where their strokes cross once more: the crossing goes to the node.
-  bool remove_slips() {
-    std::vector<int> number;  // of the layout's curves
-    std::vector<char> slips(curves_.curve_count(), 0);
-    bool any = false;
-    for (int c = 0; c < curves_.curve_count(); ++c) {
-      if (!curves_.curve(c).alive) continue;
-      number.push_back(c);
-      const int a = curves_.curve(c).start, b = curves_.curve(c).end;
-      slips[c] = a == b ? is_small_loop(c) : is_crossing(a) != is_crossing(b) && curves_.length(c) < 5 * snap_;
-      any = any || slips[c];
-    }
-    if (!any) return false;
-    any = false;
-    const PatchLayout layout = make_patch_layout(surface_, curves_, boundary_nodes());
-    for (const PatchLayout::Face& face : layout.faces) {
-      if (!face.is_disk() || face.side_count() > 2) continue;
-      std::array<int, 2> sides{-1, -1};
-      bool usable = true;
-      for (int i = 0; i < face.side_count(); ++i) {
-        const int k = face.cycles[0][i].curve;
-        usable = usable && k < static_cast<int>(number.size()) && slips[number[k]] && curves_.curve(number[k]).alive;
-        if (usable) sides[i] = number[k];
-      }
-      const auto [c, d] = sides;
-      if (!usable || c == d) continue;
-      if (d < 0) {
-        curves_.remove(c);
-        any = true;
-        continue;
-      }
-      const int v = is_crossing(curves_.curve(c).start) ? curves_.curve(c).start : curves_.curve(c).end, w = other_end(c, v);
-      if (v == w || !is_crossing(v) || other_end(d, v) != w || !is_narrow(c, d)) continue;
-      contract(c, v);
-      if (curves_.curve(d).alive) curves_.remove(d);
-      any = true;
-    }
-    return any;
-  }
-
-  // Nodes of the boundary that are too near to the next one. True if one was moved.
-  bool slide_boundary_nodes() {
-    const EditMesh& mesh = curves_.mesh();
-    const auto is_node = [&](int v) { return rank(v) == 2 || curves_.degree(v) > 0; };
-    std::vector<int> nodes;
-    for (const int e : placing_->boundary_edges())
-      if (const int v = mesh.from(curves_.half_edge(e)); is_node(v)) nodes.push_back(v);
-    std::sort(nodes.begin(), nodes.end());
-    bool any = false;
-    for (const int v : nodes) {
-      if (!is_node(v)) continue;
-      double length = 0;
-      int w = v;
-      do {
-        const int next = mesh.to(mesh.out[w]);
-        length += (curves_.points()[next] - curves_.points()[w]).norm();
-        w = next;
-      } while (w != v && length < snap_ && !is_node(w));
-      if (w == v || length >= snap_) continue;
-      const auto weight = [&](int x) { return std::tuple(rank(x), curves_.degree(x), -x); };
-      const bool forward = weight(v) < weight(w);
-      const int from = forward ? v : w, to = forward ? w : v;
-      if (rank(from) == 2 || moved_[from] + length > 2 * snap_) continue;
-      curves_.slide(from, to, forward);
-      curves_.spread();
-      moved_[to] = std::max(moved_[to], moved_[from] + length);
-      any = true;
-    }
-    return any;
-  }
-
   std::vector<int> boundary_nodes() const {
-    std::vector<int> nodes;
-    for (int i = 0; i < given_count_; ++i) nodes.push_back(junctions_[i].vertex);
+    std::vector<int> nodes = vertices();
+    nodes.resize(given_count_);
     return nodes;
   }
 
@@ -610,9 +468,7 @@ class LayoutMaker {
   std::vector<Junction> junctions_;   // first those of the boundary
   int given_count_ = 0;
   bool given_nodes_ = false;
-  std::vector<char> given_;           // per vertex: a node of the boundary from the start
   std::optional<VertexPlacing> placing_;
-  std::vector<double> moved_;         // per vertex: how far ends were moved to it
   std::vector<LayoutProblem> problems_;
 };
 

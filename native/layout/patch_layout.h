@@ -66,7 +66,7 @@ struct LayoutProblem {
 const char* name_of(LayoutProblem::Kind kind);
 
 // The layout that curves on a surface make: `curves` was made from `surface`. `nodes`: vertices that are nodes whether or not a curve ends there; they are numbered first.
-// A boundary without nodes gets one.
+// A boundary without nodes gets one. The first curves are those of `curves` that are alive, in their order.
 PatchLayout make_patch_layout(const TriangleSurface& surface, const SurfaceCurves& curves, const std::vector<int>& nodes);
 
 // Problems that can be seen from the layout itself: Dangling to TouchesItself. One that follows from another at the same face is left out.

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "layout/surface_paths.h"
-
 namespace hybrid_mesh {
 namespace {
 
@@ -176,13 +173,17 @@ std::vector<ProjectedStroke> StrokeProjection::operator()(int number, const std:
   for (const auto& [first, last] : pieces) {
     ProjectedStroke piece;
     piece.stroke = number;
-    for (int k = first; k <= last; ++k)
-      if (piece.points.empty() || (all[k].on_surface - piece.points.back()).norm() > 1e-9) piece.points.push_back(all[k].on_surface);
+    std::vector<Vec3> line;
+    for (int k = first; k <= last; ++k) {
+      if (!line.empty() && (all[k].on_surface - line.back()).norm() < 1e-9) continue;
+      line.push_back(all[k].on_surface);
+      piece.points.push_back({all[k].face, all[k].on_surface});
+    }
     piece.at_boundary = {all[first].boundary, all[last].boundary};
-    if (length(piece.points) >= options_.snap)
+    if (line.size() > 1 && length(line) >= options_.snap)
       out.push_back(std::move(piece));
     else
-      problems.push_back({Kind::Unusable, "a stroke is too short", piece.points, number, -1});
+      problems.push_back({Kind::Unusable, "a stroke is too short", line, number, -1});
   }
   return out;
 }

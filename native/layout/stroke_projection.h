@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "layout/patch_layout.h"
+#include "layout/surface_paths.h"
 #include "surface/closest_point.h"
 
 namespace hybrid_mesh {
@@ -12,7 +13,7 @@ namespace hybrid_mesh {
 // A stroke brought to the surface, or a piece of it if it left the surface in between.
 struct ProjectedStroke {
   int stroke = -1;
-  std::vector<Vec3> points;
+  std::vector<FacePoint> points;
   std::array<bool, 2> at_boundary{false, false};  // it was cut off there because it goes on beyond the surface
 };
 

@@ -107,8 +107,10 @@ class SurfaceCurves {
   // Adds a curve that may cross others and itself. Steps beside its ends and there and back are left out. Returns -1 if nothing is left, or if what is left is an edge that is a
   // curve already.
   int add(int start, int end, const std::vector<Step>& steps, int stroke);
-  // Adds a curve through gaps: it crosses no other. Returns -1 if nothing is left of it.
+  // Adds a curve through gaps. Returns -1 if nothing is left of it.
   int add(int start, int end, const std::vector<Gap>& gaps, int stroke);
+  // Does a curve cross no other, nor itself?
+  bool is_clear(int c) const;
   // Puts a vertex wherever two curves cross.
   void resolve_crossings(const Progress& progress);
   void remove(int c);
@@ -156,6 +158,9 @@ class SurfaceCurves {
     std::vector<Station> stations;
     std::vector<Chord> chords;
   };
+
+  static constexpr double kLeastGap = 1e-3;  // between neighbouring crossings of an edge, and its ends, as a fraction of it
+  static double inside(double t);            // at least so far from the ends
 
   FacePolygon polygon(int f) const;
   static bool alternate(const Chord& a, const Chord& b);

@@ -111,6 +111,24 @@ TEST(LayoutTransfer, ADrawnLayoutOnOtherTriangulations) {
   EXPECT_EQ(again.failure, "");
 }
 
+TEST(LayoutTransfer, ManyCurvesThroughFewTriangles) {
+  const TriangleSurface fine = unit(testing::sphere(12));
+  int done = 0;
+  for (const int n : {1, 2, 4}) {
+    const TriangleSurface coarse = unit(testing::sphere(n));
+    for (const double size : {6, 20, 60}) {
+      SCOPED_TRACE(std::to_string(n) + " " + std::to_string(size));
+      const LayoutOutline outline = outline_of(base_of(fine, size), false);
+      const TransferredLayout t = transferred(coarse, outline);
+      if (!t.failure.empty()) continue;
+      ++done;
+      expect_sound(coarse, t.layout);
+      expect_quads(t.layout, outline);
+    }
+  }
+  EXPECT_GE(done, 6);
+}
+
 TEST(LayoutTransfer, ScansGetTheirOwnLayoutsAgain) {
   for (const auto& path : real_models()) {
     SCOPED_TRACE(path.stem().string());

@@ -138,7 +138,6 @@ TEST(SurfaceCurves, RandomCurvesBecomeDisjointWhateverIsDoneToThem) {
           }
           curves.spread();
         }
-        curves.spread();
         ASSERT_STREQ(curves.find_defect(), "") << "after " << kind << " in step " << step;
       }
       expect_cut(shape.surface, curves);
