@@ -150,7 +150,7 @@ class LayoutSearch {
       std::vector<DrawnEdit> chosen;
       for (const PatchRegion& region : disks(dilated(poor))) {
         double wanted = 0;
-        for (const int q : region.patches) wanted += area[q] / all * s.patch_count();
+        for (const int q : region.patches) wanted += area[q] / all * (options_->even_quads > 0 ? options_->even_quads : s.patch_count());
         wanted = std::max(wanted, 1.0);
         std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
         if (edit) chosen.push_back(std::move(*edit));
@@ -261,6 +261,7 @@ class LayoutSearch {
       Candidate c{region, edit};
       c.irregular = *irregular;
       for (const int q : region.patches) c.excess += energy_[q];
+      if (c.excess < options_->relayout * static_cast<double>(region.patches.size())) return;
       found.push_back(std::move(c));
     };
     const bool room = s.patch_count() < options_->quads;

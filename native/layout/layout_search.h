@@ -18,7 +18,8 @@ struct LayoutSearchOptions {
   double irregular_price = 0.06;  // ... and a further irregular node
   int rounds = 4;
   int trials = 80;         // a round
-  double relayout = 0;     // regions of quads with more energy than this beyond an isometry's are laid out anew first; 0: none
+  double relayout = 0;     // regions of quads with more energy than this beyond an isometry's are laid out anew first, and edits tried there alone; 0: none, and everywhere
+  double even_quads = 0;   // ... with quads of the size of which the whole surface would have so many; 0: as many as there are
   std::vector<LayoutSearchOptions> finer;  // of the levels above the base
 };
 

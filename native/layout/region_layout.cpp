@@ -518,7 +518,9 @@ LayoutChange apply_edit(MappedSurface& mapped, const LayoutEdit& edit) { return 
 
 LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit drawn) { return Relayout(mapped, drawn.edit).run(std::move(drawn.piece)); }
 
-std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed, const Progress& progress) {
+namespace {
+
+std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, double slack, std::uint64_t seed, const Progress& progress) {
   const PatchedPart part = part_of(surface, region.patches);
   const TriangleSurface& disk = part.surface.mesh;
   const int n = static_cast<int>(region.corners.size());
@@ -542,7 +544,8 @@ std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchReg
     for (const int q : region.patches) inside += static_cast<int>(std::count(surface.nodes[q].begin(), surface.nodes[q].end(), region.corners[k]));
     options.boundary_quads[v] = std::max(1, (on_boundary[region.corners[k]] ? 2 : 4) - (valence[region.corners[k]] - inside));
   }
-  decimation.target_faces = std::max(n - 2, static_cast<int>(2.6 * quads));
+  // With more triangles than the quads need, pairs are found more easily beside a boundary that must stay.
+  decimation.target_faces = std::max(n - 2, static_cast<int>(slack * quads));
   EditMesh mesh(disk);
   std::vector<MeshEdit> log;
   QuadLayout layout;
@@ -583,6 +586,14 @@ std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchReg
   }
   out.piece = cut_along_layout(disk, mesh, log, layout, progress);
   return out;
+}
+
+}  // namespace
+
+std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed, const Progress& progress) {
+  for (const double slack : {2.6, 3.1, 3.6, 4.1})
+    if (std::optional<DrawnEdit> edit = decimated_edit(surface, region, quads, slack, seed, progress)) return edit;
+  return std::nullopt;
 }
 
 }  // namespace hybrid_mesh

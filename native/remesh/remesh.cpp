@@ -206,41 +206,56 @@ class Remesher {
 
   std::int64_t vertices_at(int level) const { return uniform_vertices(finest_.quads, topology_.euler, finest_.boundary_sides, level - finest_.level); }
 
+  // A cube for a ball; around a handle it takes some forty quads until a map to them holds.
+  int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus)); }
+
   // How the layout is searched: on the base alone, or on finer levels too, where skin is grown.
   LayoutSearchOptions search_options(const BaseDomain& base, int attempt) const {
     LayoutSearchOptions search;
     search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
     search.vertices = 30.0 * base.quads();
     if (options_.base != BaseSize::Minimal) return search;
-    // The base's quads are far larger than the shape's features, and there is nothing yet to choose between layouts by.
-    search.rounds = 0;
-    search.map.vertices_a_quad = std::max(15.0, 1000.0 / base.quads());
-    search.vertices = std::max(1500.0, 30.0 * base.quads());
-    if (options_.semi_regular || attempt >= 5) return search;
-    LayoutSearchOptions finer = search;
-    double quads = base.quads();
-    int levels = 0;
-    while (quads < 60 && levels != options_.levels) {
-      quads *= 4;
-      ++levels;
-      finer.map.vertices_a_quad = std::max(15.0, 1000 / quads);
-      finer.vertices = std::max(1500.0, (attempt == 1 ? 60 : 34) * quads);
-      finer.quads = static_cast<int>(1.3 * quads);
-      search.finer.push_back(finer);
+    // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
+    if (base.quads() < 20) {
+      search.rounds = 0;
+      search.map.vertices_a_quad = 1000.0 / base.quads();
     }
-    // Limbs first, then what has to be finer.
-    const double x = options_.stretch_threshold;
-    finer.relayout = 0.5 * search.map.theta * (x + 1 / x - 2);
-    finer.rounds = 2;
-    finer.trials = 80;
-    if (!search.finer.empty()) search.finer.back() = finer;
-    if (quads < 250 && levels != options_.levels) {
-      finer.vertices = (attempt == 1 ? 60 : 30) * 4 * quads;
-      finer.map.vertices_a_quad = 15;
-      finer.quads = static_cast<int>(5 * quads);
-      search.finer.push_back(finer);
+    search.vertices = std::max(1500.0, 30.0 * base.quads());
+    // Only disks can be laid out anew, and where there are handles disks are a small part.
+    if (options_.semi_regular || attempt >= 4 || topology_.genus > topology_.components) return search;
+    const auto may_add = [&](double quads, double enough) { return quads < enough && static_cast<int>(search.finer.size()) != options_.levels; };
+    for (double quads = base.quads(); may_add(quads, kFeatureQuads) || (quads >= kFeatureQuads && may_add(quads, kEvenQuads));) {
+      const bool last = quads >= kFeatureQuads;
+      quads *= 4;
+      LayoutSearchOptions level = search;
+      level.finer.clear();
+      level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
+      level.vertices = std::max(1500.0, (attempt == 1 ? 60 : last ? 30 : 34) * quads);
+      level.quads = static_cast<int>(1.3 * quads);
+      level.rounds = 0;
+      // First what sticks out, for which there are hardly any quads; then quads of even size, which are to be refined regularly from there on.
+      if (quads >= kFeatureQuads) {
+        level.rounds = last ? 0 : 1;
+        level.trials = 30;
+        level.relayout = excess_of_stretch(last ? std::pow(options_.stretch_threshold, 0.45) : options_.stretch_threshold);
+        if (last) level.even_quads = quads_for_budget(quads);
+      }
+      search.finer.push_back(level);
     }
     return search;
+  }
+
+  // Levels with irregular operations: the first with so many quads, and one more where it has fewer than the second number.
+  static constexpr double kFeatureQuads = 60, kEvenQuads = 250;
+
+  // Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
+  static double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
+
+  // About so many quads, of which a whole number of levels makes a mesh of the size asked for.
+  double quads_for_budget(double quads) const {
+    double size = static_cast<double>(budget_.vertices) - static_cast<double>(topology_.euler);
+    while (size > 1.6 * quads) size /= 4;
+    return 0.98 * size;
   }
 
   void try_base(int attempt) {
@@ -250,8 +265,12 @@ class Remesher {
     BaseDomainOptions base_options;
     base_options.size = budget_.base_size;
     base_options.boundary_side = budget_.boundary_side;
-    // A cube for a ball, and more quads where a map to so few cannot be had.
-    if (options_.base == BaseSize::Minimal) base_options.size = base_options.least = attempt < 2 ? 6 : 6 << std::min(attempt - 1, 6);
+    if (options_.base == BaseSize::Minimal) {
+      // More quads where a map to so few cannot be had.
+      base_options.size = least_quads() << (attempt < 2 ? 0 : 2 * std::min(attempt - 1, 3));
+      // The last triangles of a decimation are too few to choose quads from.
+      if (base_options.size < 60) base_options.least = static_cast<int>(base_options.size);
+    }
     base_options.seed = options_.seed + 1000003ull * (attempt + first_attempt_);
     // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
     if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= 4;
@@ -569,7 +588,9 @@ class Remesher {
     }
     std::int64_t inserted = h.base_count();
     for (int i = 0; i < h.operation_count(); ++i) inserted += static_cast<std::int64_t>(h.operation(i).roots.size());
-    const std::int64_t leaves = h.leaf_counts().faces;
+    // Quads where sizes meet are neither regular nor inserted.
+    std::int64_t regular = 0;
+    for (const std::int32_t node : mesh.node) regular += !(h.has_finer_neighbour(node, 0) || h.has_finer_neighbour(node, 1) || h.has_finer_neighbour(node, 2) || h.has_finer_neighbour(node, 3));
     report_["final"] = {{"vertices", mesh.points.size()},
                         {"quads", q.quads},
                         {"triangles", q.triangles},
@@ -579,7 +600,7 @@ class Remesher {
                         {"genus", t.genus},
                         {"components", t.components},
                         {"boundary_loops", t.boundary_loops},
-                        {"regular_fraction", 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, leaves))},
+                        {"regular_fraction", 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, regular))},
                         {"irregular_vertices", {{"base", of_base}, {"operations", of_operations}, {"transitions", of_transitions}}},
                         {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
     if (options_.error > 0) report_["final"]["error_bound_met"] = d.l2 <= options_.error;
