@@ -11,6 +11,7 @@ from .. import compat
 from .arrays import MeshArrays, mirrors, reversed_corners, transformed, world_matrix
 
 STRETCH, STRETCH_COLOR, ANISOTROPY, PATCH, IRREGULAR, PATCH_UV = "stretch", "stretch_color", "anisotropy", "patch", "irregular", "patches"
+ROOT, PATH = "root", "path"  # the address of a face's quad: its root quad's number, and 1 followed by the children in base 4
 
 
 class SourceError(ValueError):
