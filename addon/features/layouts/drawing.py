@@ -20,6 +20,7 @@ _INKS = {
     "problem": ("Layout Problems", (0.85, 0.01, 0.01, 1)),
 }
 _LAYER = "Layout"
+_THINNER = -12  # pixels: brushes are made for drawings, and half of a wide stroke sinks into the surface
 # Fractions of the surface's bounding-box diagonal.
 _LINE_RADIUS, _MARK_RADIUS = 0.001, 0.0025
 _NODE_SIZE, _MARK_SIZE = 0.006, 0.02
@@ -39,7 +40,9 @@ def drawn_layout(context, surface):
     layers = layout.data.layers
     if not layers:
         # From the scene's first frame on: the strokes then stay in view at all others.
-        strokes.add_layer(layout, _LAYER, min(frame, context.scene.frame_start))
+        layer = strokes.add_layer(layout, _LAYER, min(frame, context.scene.frame_start))
+        if hasattr(layer, "line_change"):
+            layer.line_change = _THINNER
     elif layers.active is None:
         layers.active = layers[0]
     if not strokes.has_frame(layers.active, frame):

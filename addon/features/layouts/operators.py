@@ -104,7 +104,7 @@ class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
         layout = properties.layout_of(surface, context.scene)
         found = layout.hybrid_mesh_layout.problems
         if self.index >= len(found):
-            self.report({"ERROR"}, f"The layout has {len(found)} problems; there is no number {self.index}")
+            self.report({"ERROR"}, f"The layout has {_count(len(found), 'problems')}; there is no number {self.index}")
             return {"CANCELLED"}
         problem = found[self.index]
         layout.hybrid_mesh_layout.problem_index = self.index
@@ -131,7 +131,7 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
         if result["problems"]:
             _show_check(self, context, surface, layout, drawn, result, source)
             _push_marks()
-            raise ValueError(_counted(result["problems"]))
+            raise ValueError(_refusal(result["problems"]))
         return [source_task(surface.name, source, settings, result["plan"])]
 
     def finish(self, context, results):
@@ -222,9 +222,12 @@ def _diagonal(points):
     return float(numpy.linalg.norm(numpy.ptp(points, axis=0)))
 
 
-def _counted(problems):
-    count = len(problems)
-    return f"The layout has {count} {'problem' if count == 1 else 'problems'}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}"
+def _count(number, things):
+    return f"{number} {things.removesuffix('s') if number == 1 else things}"
+
+
+def _refusal(problems):
+    return f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}"
 
 
 def _show_check(operator, context, surface, layout, drawn, result, source):
@@ -232,7 +235,7 @@ def _show_check(operator, context, surface, layout, drawn, result, source):
     size = _diagonal(source.mesh.points)
     drawing.show_curves(context, surface, result, size)
     drawing.show_problems(context, surface, layout, drawn, result["problems"], size)
-    count = f"{len(result['nodes'])} nodes, {len(result['curves'])} curves, {len(result['faces'])} faces"
+    count = ", ".join(_count(len(result[things]), things) for things in ("nodes", "curves", "faces"))
     layout.hybrid_mesh_layout.summary = count
     for problem in result["problems"]:
         operator.report({"WARNING"}, _words(problem, drawn))
@@ -334,4 +337,4 @@ def _look_at(context, surface, place, size):
         if outward is not None and toward.dot(outward) < 0.5:
             view.view_rotation = outward.to_track_quat("Z", "Y")
         view.view_location = place
-        view.view_distance = 6 * size
+        view.view_distance = 10 * size

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import textwrap
+
 import bpy
 
 from . import properties
@@ -39,9 +41,9 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         else:
             self._whole(layout, values)
         if len(values.problems):
-            count = len(values.problems)
-            layout.label(text="1 problem" if count == 1 else f"{count} problems")
-            layout.template_list("HYBRID_MESH_UL_problems", "", values, "problems", values, "problem_index", rows=min(count, 6))
+            layout.template_list("HYBRID_MESH_UL_problems", "", values, "problems", values, "problem_index", rows=min(len(values.problems), 6))
+            if values.problem_index < len(values.problems):
+                self._words(context, layout, values.problems[values.problem_index])
 
     def _whole(self, layout, values):
         column = layout.column()
@@ -54,6 +56,13 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         column = layout.column()
         column.scale_y = 1.4
         column.operator("hybrid_mesh.remesh_layout", icon="MOD_REMESH")
+
+    def _words(self, context, layout, problem):
+        """All that is said of a problem, in lines that fit the sidebar."""
+        text = problem.message if problem.number < 0 else f"{problem.message} (stroke {problem.number + 1} of {problem.layer})"
+        column = layout.column(align=True)
+        for line in textwrap.wrap(text, max(12, int(context.region.width / (8 * context.preferences.system.ui_scale)))):
+            column.label(text=line)
 
     def _region(self, layout, values):
         column = layout.column()
