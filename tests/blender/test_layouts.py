@@ -290,6 +290,25 @@ def test_what_cannot_be_drawn_on(world):
     assert not bpy.ops.hybrid_mesh.draw_layout.poll()
 
 
+@pytest.mark.parametrize("how", ["eye", "screen", "exclude"])
+def test_a_layout_in_a_collection_that_is_not_seen(world, how):
+    scan = world.scan()
+    layout = draw(scan, [on_surface(scan, [(1, 0, 0), (0, 1, 0)])])
+    bpy.ops.object.mode_set(mode="OBJECT")
+    other = bpy.data.collections.new("other")
+    bpy.context.scene.collection.children.link(other)
+    other.objects.link(layout)
+    for collection in list(layout.users_collection):
+        if collection != other:
+            collection.objects.unlink(layout)
+    hidden = bpy.context.view_layer.layer_collection.children["other"]
+    hidden.hide_viewport, hidden.exclude = how == "eye", how == "exclude"
+    other.hide_viewport = how == "screen"
+    world.select(scan)
+    assert bpy.ops.hybrid_mesh.draw_layout() == {"FINISHED"}
+    assert layout_of(scan) == layout == bpy.context.object and layout.visible_get() and len(read(layout)) == 1
+
+
 def test_draw_layout_from_edit_mode(world):
     scan = world.scan()
     bpy.ops.object.mode_set(mode="EDIT")

@@ -175,19 +175,21 @@ def _show(context, obj, surface):
         _collection(context, surface).objects.link(obj)
     obj.hide_viewport = False
     obj.hide_set(False)
+    if not obj.visible_get() and obj.name not in context.scene.collection.objects:
+        context.scene.collection.objects.link(obj)  # All collections that it is in are hidden.
     context.view_layer.update()
 
 
 def _collection(context, surface):
     """Where new objects go: beside the surface, if that is in view."""
-    seen = [layer.collection for layer in _included(context.view_layer.layer_collection)]
+    seen = [layer.collection for layer in _visible(context.view_layer.layer_collection)]
     beside = [collection for collection in surface.users_collection if collection in seen]
     return beside[0] if beside else context.scene.collection
 
 
-def _included(layer_collection):
-    if layer_collection.exclude:
+def _visible(layer_collection):
+    if layer_collection.exclude or not layer_collection.is_visible:
         return
     yield layer_collection
     for child in layer_collection.children:
-        yield from _included(child)
+        yield from _visible(child)

@@ -187,8 +187,7 @@ class HYBRID_MESH_OT_repatch_region(RemeshJobOperator):
             raise ValueError(f"{hierarchy.name} has no plan; remesh {source.name} again")
         addresses = _selected_quads(level, hierarchy)
         _, drawn = drawing.read_drawn(context, level)
-        number = hierarchy_properties.level_number(level.hybrid_mesh.level)
-        operation = plans.repatch_operation(number, addresses, [(stroke.points, drawing.fit_of(stroke)) for stroke in drawn], self.buffer_rings)
+        operation = plans.repatch_operation(_level_number(level), addresses, [(stroke.points, drawing.fit_of(stroke)) for stroke in drawn], self.buffer_rings)
         self._level, self._hierarchy = level.name, hierarchy.name
         return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
 
@@ -269,31 +268,30 @@ def _push_marks():
 
 def _selected_quads(level, hierarchy):
     """Addresses of the faces that are selected in a level object; raises ValueError where they cannot be had."""
-    if level.mode == "EDIT":
-        level.update_from_editmode()
     root, path = _addresses(level)
     if root is None:
         raise ValueError(f"{level.name} does not know its quads; remesh the source again")
-    chosen = numpy.empty(len(level.data.polygons), dtype=bool)
-    level.data.polygons.foreach_get("select", chosen)
-    if (path[chosen] < 1).any():
-        raise ValueError(f"{int((path[chosen] < 1).sum())} of the selected faces of {level.name} were not made by a remesh; deselect them")
-    others = [obj for obj in hierarchy.objects if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy]
+    chosen = meshes.selected_faces(level)
+    made_by_hand = int((path[chosen] < 1).sum())
+    if made_by_hand:
+        raise ValueError(f"{made_by_hand} of the selected faces of {level.name} were not made by a remesh; deselect them")
     known = []
-    for obj in others:
-        roots, paths = _addresses(obj)
-        if roots is not None:
-            known.append((hierarchy_properties.level_number(obj.hybrid_mesh.level), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
-    number = hierarchy_properties.level_number(level.hybrid_mesh.level)
-    return plans.quad_addresses(number, root[chosen].tolist(), path[chosen].tolist(), plans.root_levels(known))
+    for obj in hierarchy.objects:
+        if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy:
+            roots, paths = _addresses(obj)
+            if roots is not None:
+                known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
+    return plans.quad_addresses(_level_number(level), root[chosen].tolist(), path[chosen].tolist(), plans.root_levels(known))
 
 
 def _addresses(level):
     """(root, path) of every face of a level object as arrays, or (None, None)."""
-    values = [meshes.get_attribute(level.data, name) for name in (meshes.ROOT, meshes.PATH)]
-    if any(one is None or len(one) != len(level.data.polygons) for one in values):
-        return None, None
-    return values
+    root, path = (meshes.face_numbers(level, name) for name in (meshes.ROOT, meshes.PATH))
+    return (None, None) if root is None or path is None else (root, path)
+
+
+def _level_number(level):
+    return hierarchy_properties.level_number(level.hybrid_mesh.level)
 
 
 def _settings_of(hierarchy, scene):
