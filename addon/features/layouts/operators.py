@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import contextlib
+
 import bpy
 import mathutils
 import numpy
@@ -79,7 +81,8 @@ class HYBRID_MESH_OT_check_layout(_OnLayout, bpy.types.Operator):
         try:
             source = meshes.read_source(surface, context.evaluated_depsgraph_get())
             layout, drawn = drawing.read_drawn(context, surface)
-            result = native().make_layout(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
+            with _waiting(context):
+                result = native().make_layout(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
         except (ValueError, NativeMissing) as error:
             self.report({"ERROR"}, f"{surface.name}: {error}")
             return {"CANCELLED"}
@@ -127,7 +130,8 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
         settings = core_settings(context.scene.hybrid_mesh)
         source = meshes.read_source(surface, context.evaluated_depsgraph_get(), transfer.collect)
         layout, drawn = drawing.read_drawn(context, surface)
-        result = native().layout_plan(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
+        with _waiting(context):
+            result = native().layout_plan(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
         if result["problems"]:
             _show_check(self, context, surface, layout, drawn, result, source)
             _push_marks()
@@ -211,6 +215,19 @@ class HYBRID_MESH_OT_repatch_region(RemeshJobOperator):
 
     def hides_source(self, context):
         return False
+
+
+@contextlib.contextmanager
+def _waiting(context):
+    """A layout takes some seconds where the surface has millions of triangles."""
+    window = None if bpy.app.background else context.window
+    if window is not None:
+        window.cursor_modal_set("WAIT")
+    try:
+        yield
+    finally:
+        if window is not None:
+            window.cursor_modal_restore()
 
 
 def _triangles(source):
