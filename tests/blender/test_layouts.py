@@ -235,7 +235,7 @@ def test_draw_layout_leaves_the_scan_as_it_is(world, place):
     settings = bpy.context.scene.tool_settings
     assert settings.gpencil_stroke_placement_view3d == "SURFACE"
     assert getattr(settings, "gpencil_surface_offset", 0) == 0 and getattr(layout.data, "zdepth_offset", 0) == 0
-    assert numpy.allclose(layout.matrix_world.to_scale(), 1, atol=1e-3)
+    assert numpy.allclose(layout.matrix_world.to_scale(), 1, atol=1e-3) and layout.hide_render
     line = on_surface(scan, [(1, 0, 0), (1, 1, 0), (0, 1, 0)])
     strokes().write(layout, layout.data.layers.active, 1, [line])
     assert distance(world, scan, read(layout)[0]) < tolerance(world, scan)

@@ -166,6 +166,7 @@ def _new_object(context, surface, kind, suffix, inks):
     obj.parent = surface
     obj.matrix_parent_inverse = surface.matrix_world.inverted()
     obj.location = surface.matrix_world.translation
+    obj.hide_render = True
     context.view_layer.update()
     return obj
 
