@@ -41,6 +41,20 @@ def input_key(group, name):
     return next(item.identifier for item in items if item.name == name)
 
 
+def grease_pencils():
+    """The Grease Pencil data-blocks that objects have; in some versions another collection holds those of annotations."""
+    return bpy.data.grease_pencils_v3 if hasattr(bpy.data, "grease_pencils_v3") else bpy.data.grease_pencils
+
+
+def draw_on_surfaces(tool_settings, data):
+    """Has strokes drawn into a Grease Pencil data-block lie on the surface under the pointer, not above it."""
+    tool_settings.gpencil_stroke_placement_view3d = "SURFACE"
+    if hasattr(tool_settings, "gpencil_surface_offset"):
+        tool_settings.gpencil_surface_offset = 0
+    if hasattr(data, "zdepth_offset"):
+        data.zdepth_offset = 0
+
+
 def register_command_line(name, function):
     """Makes `blender --command NAME ARGS` call function(list of arguments) -> exit code. Returns a handle or None before 4.2."""
     return bpy.utils.register_cli_command(name, function) if HAS_COMMAND_LINE else None

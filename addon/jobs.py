@@ -5,7 +5,7 @@ import atexit
 
 import bpy
 
-from .core.native import NativeMissing, native
+from .core.native import NativeMissing, explain, native
 from .core.tasks import TaskRun
 
 POLL_SECONDS = 0.1
@@ -20,8 +20,9 @@ class NativeJobOperator(bpy.types.Operator):
     """Base of operators with long native work.
 
     Subclasses have prepare(context) -> [Task], which may raise ValueError with a line for people, and finish(context, results), which
-    puts all results into the scene at once; so that one that is cancelled has changed nothing. In a window it is modal and Esc ends it;
-    from scripts and in the background it returns when the work is done.
+    puts all results into the scene at once; so that one that is cancelled has changed nothing. failed(context, task, error) may show
+    where a task failed, beside the line that is reported. In a window it is modal and Esc ends it; from scripts and in the background it
+    returns when the work is done.
     """
 
 
@@ -34,6 +35,9 @@ class NativeJobOperator(bpy.types.Operator):
 
     def finish(self, context, results):
         raise NotImplementedError
+
+    def failed(self, context, task, error):
+        pass
 
     def execute(self, context):
         run = self._prepare(context)
@@ -90,11 +94,15 @@ class NativeJobOperator(bpy.types.Operator):
             return TaskRun(self.prepare(context))
         except (ValueError, NativeMissing) as error:
             self.report({"ERROR"}, str(error))
-            return None
+        except native().Error as error:
+            self.report({"ERROR"}, explain(error))
+        return None
 
     def _conclude(self, context, run):
         made = False
         errors = [f"{task.name}: {cause}" for task, cause in run.errors]
+        for task, error in run.failures:
+            self.failed(context, task, error)
         if run.results:
             try:
                 self.finish(context, run.results)

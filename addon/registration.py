@@ -4,6 +4,9 @@
 import bpy
 
 from . import compat, jobs
+from .features.layouts import operators as layout_operators
+from .features.layouts import panel as layout_panel
+from .features.layouts import properties as layout_properties
 from .features.levels import operators as level_operators
 from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
@@ -14,15 +17,24 @@ from .features.remesh import properties as remesh_properties
 CLASSES = (
     level_properties.HybridMeshObject,
     level_properties.HybridMeshCollection,
+    layout_properties.HybridMeshProblem,
+    layout_properties.HybridMeshLayout,
     remesh_properties.HybridMeshScene,
     remesh_operators.HYBRID_MESH_OT_remesh,
     remesh_operators.HYBRID_MESH_OT_preset,
     level_operators.HYBRID_MESH_OT_show_level,
+    layout_operators.HYBRID_MESH_OT_draw_layout,
+    layout_operators.HYBRID_MESH_OT_check_layout,
+    layout_operators.HYBRID_MESH_OT_show_problem,
+    layout_operators.HYBRID_MESH_OT_remesh_layout,
+    layout_operators.HYBRID_MESH_OT_repatch_region,
+    layout_panel.HYBRID_MESH_UL_problems,
     remesh_panel.HYBRID_MESH_PT_remesh,
     remesh_panel.HYBRID_MESH_PT_advanced,
     level_panel.HYBRID_MESH_PT_levels,
+    layout_panel.HYBRID_MESH_PT_layout,
 )
-PROPERTY_MODULES = (level_properties, remesh_properties)
+PROPERTY_MODULES = (level_properties, layout_properties, remesh_properties)
 
 _command_line = []
 

@@ -63,14 +63,17 @@ def build(name, levels, matrix, scene, place=None, source=None, carry=None):
 
 
 def add_figures(mesh, arrays):
-    """The figures of a level as attributes: stretch (also as the active colours), anisotropy, patch and irregular faces."""
+    """What a level says of its faces as attributes: stretch (also as the active colours), anisotropy, patch, irregular faces, addresses."""
     stretch = arrays.get("stretch")
     if stretch is not None:
         meshes.set_attribute(mesh, meshes.STRETCH, "FLOAT", "FACE", stretch)
         corners = numpy.repeat(stretch_colors(stretch), numpy.diff(arrays["offsets"]), axis=0)
         meshes.set_attribute(mesh, meshes.STRETCH_COLOR, "BYTE_COLOR", "CORNER", corners)
         mesh.color_attributes.active_color_index = mesh.color_attributes.find(meshes.STRETCH_COLOR)
-    for key, name, kind in (("anisotropy", meshes.ANISOTROPY, "FLOAT"), ("patch", meshes.PATCH, "INT"), ("irregular", meshes.IRREGULAR, "BOOLEAN")):
+    for key, name, kind in (
+        ("anisotropy", meshes.ANISOTROPY, "FLOAT"), ("patch", meshes.PATCH, "INT"), ("irregular", meshes.IRREGULAR, "BOOLEAN"),
+        ("root", meshes.ROOT, "INT"), ("path", meshes.PATH, "INT"),
+    ):  # fmt: skip
         if arrays.get(key) is not None:
             meshes.set_attribute(mesh, name, kind, "FACE", arrays[key])
 

@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+import bmesh
 import bpy
 import numpy
 
@@ -11,6 +12,7 @@ from .. import compat
 from .arrays import MeshArrays, mirrors, reversed_corners, transformed, world_matrix
 
 STRETCH, STRETCH_COLOR, ANISOTROPY, PATCH, IRREGULAR, PATCH_UV = "stretch", "stretch_color", "anisotropy", "patch", "irregular", "patches"
+ROOT, PATH = "root", "path"  # the address of a face's quad: its root quad's number, and 1 followed by the children in base 4
 
 
 class SourceError(ValueError):
@@ -122,6 +124,26 @@ def get_attribute(mesh, name):
     field, width, dtype = _ATTRIBUTES[attribute.data_type]
     values = values_of(attribute.data, field, width, dtype)
     return values
+
+
+def face_numbers(obj, name):
+    """The values of a whole-number face attribute of a mesh object, in Edit Mode of the mesh that is edited, as an array; or None."""
+    if obj.mode == "EDIT":  # The attributes of the data-block are empty then.
+        faces = bmesh.from_edit_mesh(obj.data).faces
+        layer = faces.layers.int.get(name)
+        return None if layer is None else numpy.fromiter((face[layer] for face in faces), numpy.int32, len(faces))
+    attribute = obj.data.attributes.get(name)
+    if attribute is None or attribute.data_type != "INT" or attribute.domain != "FACE":
+        return None
+    return get_attribute(obj.data, name)
+
+
+def selected_faces(obj):
+    """Whether each face of a mesh object is selected, as an array; in Edit Mode of the mesh that is edited."""
+    if obj.mode == "EDIT":
+        faces = bmesh.from_edit_mesh(obj.data).faces
+        return numpy.fromiter((face.select for face in faces), bool, len(faces))
+    return values_of(obj.data.polygons, "select", 1, bool)
 
 
 def mesh_arrays(mesh):

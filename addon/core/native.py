@@ -23,6 +23,8 @@ def explain(error, path=None):
     text = " ".join(str(error).split())
     if isinstance(error, OSError) and error.strerror:
         text = error.strerror if error.filename is None or error.filename == path else f"{error.filename}: {error.strerror}"
+    elif kind == "LayoutError" and error.args:
+        text = " ".join(str(error.args[0]).split())  # What follows are the problems, with their places.
     elif isinstance(error, MemoryError):
         text = "not enough memory"
     elif kind == "InternalError":

@@ -22,9 +22,14 @@ class TaskRun:
     def __init__(self, tasks):
         self.tasks = list(tasks)
         self.results = []  # (task, result)
-        self.errors = []  # (task, one line)
+        self.failures = []  # (task, exception)
         self._job = None
         self._next = 0
+
+    @property
+    def errors(self):
+        """(task, one line for people) of the tasks that failed."""
+        return [(task, explain(error)) for task, error in self.failures]
 
     @property
     def done(self):
@@ -55,7 +60,7 @@ class TaskRun:
             try:
                 self._job = task.start()
             except Exception as error:  # Reported by whoever runs the tasks.
-                self.errors.append((task, explain(error)))
+                self.failures.append((task, error))
 
     def wait(self):
         """Does everything; Ctrl-C gets through."""
@@ -81,4 +86,4 @@ class TaskRun:
         try:
             self.results.append((task, job.result()))
         except Exception as error:  # Reported by whoever runs the tasks.
-            self.errors.append((task, explain(error)))
+            self.failures.append((task, error))

@@ -42,6 +42,10 @@ class InternalError(Error):
     pass
 
 
+class LayoutError(InvalidInput):
+    pass
+
+
 SETTINGS = {
     "vertices", "error", "levels", "refinement", "faces", "base", "stretch_threshold", "semi_regular", "drop_components", "strict", "seed",
     "threads",

@@ -34,6 +34,18 @@ def test_a_task_that_does_not_start_is_an_error():
     assert run.done and "ZeroDivisionError" in run.errors[0][1]
 
 
+def test_a_failure_is_kept_with_all_that_it_says():
+    problems = [{"kind": "odd_sides", "message": "a face has 5 sides", "points": numpy.zeros((1, 3)), "stroke": -1, "face": 3}]
+
+    def start():
+        raise _native.LayoutError("region 0: a face has 5 sides", problems)
+
+    run = TaskRun([Task("a", start)])
+    run.wait()
+    assert run.errors == [(run.tasks[0], "region 0: a face has 5 sides")]
+    assert run.failures[0][1].args[1] is problems
+
+
 def test_cancel_ends_soon_and_starts_nothing_more(monkeypatch):
     monkeypatch.setenv("HYBRID_MESH_FAKE_SECONDS", "60")
     run = TaskRun([task("a"), task("b")])

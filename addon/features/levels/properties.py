@@ -7,6 +7,7 @@ import json
 import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
+from ...bridge.names import with_suffix
 from ...core import report as reports
 
 ROLES = (
@@ -26,14 +27,18 @@ class HybridMeshCollection(bpy.types.PropertyGroup):
     source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed")
     preview: PointerProperty(name="Preview", type=bpy.types.Object, description="The object that shows one level at a time")
     report: StringProperty(name="Report", description="What was measured, as JSON")
+    plan: PointerProperty(name="Plan", type=bpy.types.Text, description="What was decided, as JSON; a remesh can be given it again")
 
 
-def describe(built, source, report):
-    """Writes into a new hierarchy what it is and what was measured."""
+def describe(built, source, report, plan=""):
+    """Writes into a new hierarchy what it is, what was measured and, as JSON text, what was decided."""
     collection = built.collection.hybrid_mesh
     collection.source = source
     collection.preview = built.preview
     collection.report = json.dumps(report, ensure_ascii=False)
+    if plan:
+        collection.plan = bpy.data.texts.new(with_suffix(built.collection.name, " plan"))
+        collection.plan.write(plan)
     for level, obj in zip(built.level_names, built.levels, strict=True):
         obj.hybrid_mesh.role = "LEVEL"
         obj.hybrid_mesh.level = level
@@ -57,6 +62,17 @@ def hierarchy_of(obj):
 def report_of(collection):
     """The report of a hierarchy as a dictionary; empty where there is none."""
     return _parsed(collection.hybrid_mesh.report)
+
+
+def plan_of(collection):
+    """The plan of a hierarchy as text; empty where there is none."""
+    plan = collection.hybrid_mesh.plan
+    return plan.as_string() if plan is not None else ""
+
+
+def level_number(name):
+    """The number in a level's name: 2 of M2 and of N2."""
+    return int(name[1:])
 
 
 def quality_of(collection):

@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import contextlib
+
+import bpy
+import mathutils
+import numpy
+from bpy.props import IntProperty
+
+from ... import compat
+from ...bridge import arrays, meshes, strokes, transfer
+from ...core import plans
+from ...core import settings as core
+from ...core.native import NativeMissing, explain, native
+from ..levels import properties as hierarchy_properties
+from ..remesh.job import RemeshJobOperator, remesh_task, source_task
+from ..remesh.properties import core_settings
+from . import drawing, properties
+
+
+class _OnSurface:
+    """Mix-in of operators that work on the mesh object that the active object stands for."""
+
+    @classmethod
+    def poll(cls, context):
+        if properties.surface_of(context.object, context.scene) is None:
+            cls.poll_message_set("Make a mesh object, or its layout, the active object")
+            return False
+        return True
+
+
+class _OnLayout(_OnSurface):
+    """Mix-in of operators that use a layout that was drawn."""
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if context.object.type == "MESH" and context.mode != "OBJECT":
+            cls.poll_message_set("Works in Object Mode, and in the modes of Grease Pencil")
+            return False
+        if properties.layout_of(properties.surface_of(context.object, context.scene), context.scene) is None:
+            cls.poll_message_set("The object has no layout; Draw Layout makes one")
+            return False
+        return True
+
+
+class HYBRID_MESH_OT_draw_layout(_OnSurface, bpy.types.Operator):
+    """Draw a patch layout on the mesh with Grease Pencil. The mesh stays as it is"""
+
+    bl_idname = "hybrid_mesh.draw_layout"
+    bl_label = "Draw Layout"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        surface = properties.surface_of(context.object, context.scene)
+        context.view_layer.update()
+        try:
+            arrays.world_matrix(surface.matrix_world)
+        except arrays.MatrixError as error:
+            self.report({"ERROR"}, f"{surface.name}: {error}")
+            return {"CANCELLED"}
+        _to_object_mode(context)
+        layout = drawing.drawn_layout(context, surface)
+        _select_only(context, layout)
+        compat.draw_on_surfaces(context.scene.tool_settings, layout.data)
+        bpy.ops.object.mode_set(mode=strokes.draw_mode(layout))
+        if not surface.visible_get():
+            self.report({"WARNING"}, f"{surface.name} is hidden: strokes will not lie on it")
+        return {"FINISHED"}
+
+
+class HYBRID_MESH_OT_check_layout(_OnLayout, bpy.types.Operator):
+    """Make curves on the surface of the strokes drawn, and show them and whatever keeps them from being a patch layout"""
+
+    bl_idname = "hybrid_mesh.check_layout"
+    bl_label = "Check Layout"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        surface = properties.surface_of(context.object, context.scene)
+        try:
+            source = meshes.read_source(surface, context.evaluated_depsgraph_get())
+            layout, drawn = drawing.read_drawn(context, surface)
+            with _waiting(context):
+                result = native().make_layout(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
+        except (ValueError, NativeMissing) as error:
+            self.report({"ERROR"}, f"{surface.name}: {error}")
+            return {"CANCELLED"}
+        except native().Error as error:
+            self.report({"ERROR"}, f"{surface.name}: {explain(error)}")
+            return {"CANCELLED"}
+        _show_check(self, context, surface, layout, drawn, result, source)
+        return {"FINISHED"}
+
+
+class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
+    """Look at a problem of the layout, and select the stroke that is wrong"""
+
+    bl_idname = "hybrid_mesh.show_problem"
+    bl_label = "Show Problem"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    index: IntProperty(name="Problem", min=0)
+
+    def execute(self, context):
+        surface = properties.surface_of(context.object, context.scene)
+        layout = properties.layout_of(surface, context.scene)
+        found = layout.hybrid_mesh_layout.problems
+        if self.index >= len(found):
+            self.report({"ERROR"}, f"The layout has {_count(len(found), 'problems')}; there is no number {self.index}")
+            return {"CANCELLED"}
+        problem = found[self.index]
+        layout.hybrid_mesh_layout.problem_index = self.index
+        if problem.number >= 0 and not strokes.select(layout, context.scene.frame_current, problem.layer, problem.number):
+            self.report({"WARNING"}, "The stroke is gone; check the layout again")
+        if problem.size > 0:
+            _look_at(context, surface, layout.matrix_world @ mathutils.Vector(problem.place), problem.size)
+        return {"FINISHED"}
+
+
+class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
+    """Remesh with the layout drawn as base domain, with the scene's remesh settings. The source stays as it is"""
+
+    bl_idname = "hybrid_mesh.remesh_layout"
+    bl_label = "Remesh from Layout"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def prepare(self, context):
+        surface = properties.surface_of(context.object, context.scene)
+        settings = core_settings(context.scene.hybrid_mesh)
+        source = meshes.read_source(surface, context.evaluated_depsgraph_get(), transfer.collect)
+        layout, drawn = drawing.read_drawn(context, surface)
+        with _waiting(context):
+            result = native().layout_plan(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
+        if result["problems"]:
+            _show_check(self, context, surface, layout, drawn, result, source)
+            _push_marks()
+            raise ValueError(_refusal(result["problems"]))
+        return [source_task(surface.name, source, settings, result["plan"])]
+
+    def finish(self, context, results):
+        _to_object_mode(context)
+        super().finish(context, results)
+        surface = context.scene.objects[results[0][0].name]
+        layout = properties.layout_of(surface, context.scene)
+        if layout is not None:
+            drawing.forget_problems(context, surface, layout)
+        if self.hides_source(context):
+            drawing.hide(context, surface)
+
+    def failed(self, context, task, error):
+        _show_failure(context, task.name, error)
+
+    def hides_source(self, context):
+        return context.scene.hybrid_mesh.hide_source
+
+
+class HYBRID_MESH_OT_repatch_region(RemeshJobOperator):
+    """Lay out the selected faces of a level anew along the curves drawn over them: the source is remeshed with one more operation"""
+
+    bl_idname = "hybrid_mesh.repatch_region"
+    bl_label = "Repatch Region"
+    bl_options = {"REGISTER", "UNDO"}
+
+    buffer_rings: IntProperty(
+        name="Buffer Rings", description="Rings of quads around the region that are smoothed with it", default=1, min=0, max=plans.MAXIMUM_BUFFER_RINGS
+    )
+
+    _level = ""  # names, because the objects may go while the work runs
+    _hierarchy = ""
+
+    @classmethod
+    def poll(cls, context):
+        if not properties.is_level(properties.surface_of(context.object, context.scene)):
+            cls.poll_message_set("Make a level of a hierarchy, or the layout drawn on it, the active object")
+            return False
+        return True
+
+    def draw(self, context):
+        self.layout.prop(self, "buffer_rings")
+
+    def prepare(self, context):
+        level = properties.surface_of(context.object, context.scene)
+        hierarchy = level.hybrid_mesh.hierarchy
+        graph = context.evaluated_depsgraph_get()
+        source = hierarchy.hybrid_mesh.source
+        if source is None or context.scene.objects.get(source.name) != source:
+            raise ValueError(f"{hierarchy.name}: the object that it was made of is gone from the scene")
+        plan = hierarchy_properties.plan_of(hierarchy)
+        if not plan:
+            raise ValueError(f"{hierarchy.name} has no plan; remesh {source.name} again")
+        addresses = _selected_quads(level, hierarchy)
+        _, drawn = drawing.read_drawn(context, level)
+        operation = plans.repatch_operation(_level_number(level), addresses, [(stroke.points, drawing.fit_of(stroke)) for stroke in drawn], self.buffer_rings)
+        self._level, self._hierarchy = level.name, hierarchy.name
+        return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
+
+    def finish(self, context, results):
+        _to_object_mode(context)
+        super().finish(context, results)
+        level = context.scene.objects.get(self._level)
+        if level is not None:
+            layout = properties.layout_of(level, context.scene)
+            if layout is not None:
+                drawing.forget_problems(context, level, layout)
+            drawing.hide(context, level)
+        hierarchy = bpy.data.collections.get(self._hierarchy)
+        for obj in hierarchy.objects if hierarchy is not None else ():
+            # What was made before would cover what is new.
+            if obj.name in context.view_layer.objects:
+                obj.hide_set(True)
+
+    def failed(self, context, task, error):
+        _show_failure(context, self._level, error)
+
+    def hides_source(self, context):
+        return False
+
+
+@contextlib.contextmanager
+def _waiting(context):
+    """A layout takes some seconds where the surface has millions of triangles."""
+    window = None if bpy.app.background else context.window
+    if window is not None:
+        window.cursor_modal_set("WAIT")
+    try:
+        yield
+    finally:
+        if window is not None:
+            window.cursor_modal_restore()
+
+
+def _triangles(source):
+    return source.mesh.points, source.mesh.indices.reshape(-1, 3)
+
+
+def _diagonal(points):
+    return float(numpy.linalg.norm(numpy.ptp(points, axis=0)))
+
+
+def _count(number, things):
+    return f"{number} {things.removesuffix('s') if number == 1 else things}"
+
+
+def _refusal(problems):
+    return f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}"
+
+
+def _show_check(operator, context, surface, layout, drawn, result, source):
+    """Shows what was made of the strokes, and says it."""
+    size = _diagonal(source.mesh.points)
+    drawing.show_curves(context, surface, result, size)
+    drawing.show_problems(context, surface, layout, drawn, result["problems"], size)
+    count = ", ".join(_count(len(result[things]), things) for things in ("nodes", "curves", "faces"))
+    layout.hybrid_mesh_layout.summary = count
+    for problem in result["problems"]:
+        operator.report({"WARNING"}, _words(problem, drawn))
+    if not result["problems"]:
+        operator.report({"INFO"}, f"{surface.name}: {count}; nothing is wrong")
+
+
+def _words(problem, drawn):
+    stroke = problem["stroke"]
+    return f"{problem['message']} (stroke {drawn[stroke].number + 1} of {drawn[stroke].layer})" if 0 <= stroke < len(drawn) else problem["message"]
+
+
+def _show_failure(context, name, error):
+    """Marks what the native module says of the curves of a region."""
+    if type(error).__name__ != "LayoutError" or len(error.args) < 2:
+        return
+    surface = context.scene.objects.get(name)
+    layout = properties.layout_of(surface, context.scene) if surface is not None else None
+    if layout is None:
+        return
+    drawn = strokes.read(layout, context.scene.frame_current)
+    points = numpy.array([surface.matrix_world @ mathutils.Vector(corner) for corner in surface.bound_box])
+    drawing.show_problems(context, surface, layout, drawn, error.args[1], _diagonal(points))
+    _push_marks()
+
+
+def _push_marks():
+    """An operator that is cancelled makes no undo step; what it has marked is one of its own."""
+    bpy.ops.ed.undo_push(message="Mark Layout Problems")
+
+
+def _selected_quads(level, hierarchy):
+    """Addresses of the faces that are selected in a level object; raises ValueError where they cannot be had."""
+    root, path = _addresses(level)
+    if root is None:
+        raise ValueError(f"{level.name} does not know its quads; remesh the source again")
+    chosen = meshes.selected_faces(level)
+    made_by_hand = int((path[chosen] < 1).sum())
+    if made_by_hand:
+        raise ValueError(f"{made_by_hand} of the selected faces of {level.name} were not made by a remesh; deselect them")
+    known = []
+    for obj in hierarchy.objects:
+        if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy:
+            roots, paths = _addresses(obj)
+            if roots is not None:
+                known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
+    return plans.quad_addresses(_level_number(level), root[chosen].tolist(), path[chosen].tolist(), plans.root_levels(known))
+
+
+def _addresses(level):
+    """(root, path) of every face of a level object as arrays, or (None, None)."""
+    root, path = (meshes.face_numbers(level, name) for name in (meshes.ROOT, meshes.PATH))
+    return (None, None) if root is None or path is None else (root, path)
+
+
+def _level_number(level):
+    return hierarchy_properties.level_number(level.hybrid_mesh.level)
+
+
+def _settings_of(hierarchy, scene):
+    """The settings that a hierarchy was made with: another region is no reason for another size. The scene's, if they are not known."""
+    recorded = hierarchy_properties.report_of(hierarchy).get("settings")
+    given = core_settings(scene.hybrid_mesh)
+    if not isinstance(recorded, dict):
+        return given
+    return core.from_mapping({**recorded, "threads": given.threads})
+
+
+def _to_object_mode(context):
+    if context.object is not None and context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def _select_only(context, obj):
+    for other in context.selected_objects:
+        other.select_set(False)
+    obj.select_set(True)
+    context.view_layer.objects.active = obj
+
+
+def _look_at(context, surface, place, size):
+    """Turns the 3D views of the window to a place, from outside the surface."""
+    if context.window is None:
+        return
+    inverse = surface.matrix_world.inverted()
+    try:
+        found, _, normal, _ = surface.evaluated_get(context.evaluated_depsgraph_get()).closest_point_on_mesh(inverse @ place)
+    except RuntimeError:  # It has no faces any more.
+        found = False
+    outward = (inverse.to_3x3().transposed() @ normal).normalized() if found else None
+    for area in context.window.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        view = area.spaces.active.region_3d
+        if view.view_perspective == "CAMERA":
+            view.view_perspective = "PERSP"
+        toward = view.view_rotation @ mathutils.Vector((0, 0, 1))
+        if outward is not None and toward.dot(outward) < 0.5:
+            view.view_rotation = outward.to_track_quat("Z", "Y")
+        view.view_location = place
+        view.view_distance = 10 * size

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import textwrap
+
+import bpy
+
+from . import properties
+
+
+class HYBRID_MESH_UL_problems(bpy.types.UIList):
+    bl_idname = "HYBRID_MESH_UL_problems"
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
+        row = layout.row(align=True)
+        row.label(text=item.message, icon="ERROR")
+        row.operator("hybrid_mesh.show_problem", text="", icon="VIEWZOOM", emboss=False).index = index
+
+
+class HYBRID_MESH_PT_layout(bpy.types.Panel):
+    bl_idname = "HYBRID_MESH_PT_layout"
+    bl_label = "Patch Layout"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Hybrid Mesh"
+    bl_order = 2
+
+    @classmethod
+    def poll(cls, context):
+        return properties.surface_of(context.object, context.scene) is not None
+
+    def draw(self, context):
+        layout = self.layout
+        surface = properties.surface_of(context.object, context.scene)
+        drawn = properties.layout_of(surface, context.scene)
+        layout.label(text=surface.name, icon="MESH_DATA")
+        layout.operator("hybrid_mesh.draw_layout", icon="GREASEPENCIL")
+        if drawn is None:
+            return
+        values = drawn.hybrid_mesh_layout
+        if properties.is_level(surface):
+            self._region(layout, values)
+        else:
+            self._whole(layout, values)
+        if len(values.problems):
+            layout.template_list("HYBRID_MESH_UL_problems", "", values, "problems", values, "problem_index", rows=min(len(values.problems), 6))
+            if values.problem_index < len(values.problems):
+                self._words(context, layout, values.problems[values.problem_index])
+
+    def _whole(self, layout, values):
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(values, "snap")
+        layout.operator("hybrid_mesh.check_layout", icon="VIEWZOOM")
+        if values.summary:
+            layout.label(text=values.summary, icon="INFO" if len(values.problems) else "CHECKMARK")
+        column = layout.column()
+        column.scale_y = 1.4
+        column.operator("hybrid_mesh.remesh_layout", icon="MOD_REMESH")
+
+    def _words(self, context, layout, problem):
+        """All that is said of a problem, in lines that fit the sidebar."""
+        text = problem.message if problem.number < 0 else f"{problem.message} (stroke {problem.number + 1} of {problem.layer})"
+        column = layout.column(align=True)
+        for line in textwrap.wrap(text, max(12, int(context.region.width / (8 * context.preferences.system.ui_scale)))):
+            column.label(text=line)
+
+    def _region(self, layout, values):
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(values, "buffer_rings")
+        column = layout.column()
+        column.scale_y = 1.4
+        column.operator("hybrid_mesh.repatch_region", icon="MOD_REMESH").buffer_rings = values.buffer_rings

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a drawn layout, and the objects that show what became of it, know about themselves, saved in the .blend."""
+
+import bpy
+from bpy.props import CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
+
+from ...bridge import strokes
+from ...core.plans import MAXIMUM_BUFFER_RINGS
+from ..levels.properties import hierarchy_of
+
+KINDS = (
+    ("NONE", "None", "Nothing to do with layouts"),
+    ("DRAWN", "Drawn", "The strokes of a layout"),
+    ("CURVES", "Curves", "What a check made of the strokes: curves and nodes on the surface"),
+    ("PROBLEMS", "Problems", "Marks where a check found something wrong"),
+)
+
+
+class HybridMeshProblem(bpy.types.PropertyGroup):
+    kind: StringProperty(name="Kind")
+    message: StringProperty(name="Problem", description="What is wrong")
+    place: FloatVectorProperty(name="Place", description="Where, in the space of the layout's object")
+    size: FloatProperty(name="Size", description="How far what is wrong reaches; negative where it has no place", default=-1)
+    layer: StringProperty(name="Layer", description="Layer of the stroke that is wrong, if it is one")
+    number: IntProperty(name="Stroke", description="Number of that stroke in its layer", default=-1)
+
+
+class HybridMeshLayout(bpy.types.PropertyGroup):
+    kind: EnumProperty(name="Kind", items=KINDS, default="NONE")
+    surface: PointerProperty(name="Surface", type=bpy.types.Object, description="The mesh object that is drawn on")
+    snap: FloatProperty(
+        name="Snap", description="What ends so near to a node, a curve or the boundary is joined with it; a fraction of the bounding-box diagonal",
+        default=0.02, min=0, max=0.2, precision=3, step=0.1,
+    )  # fmt: skip
+    buffer_rings: IntProperty(name="Buffer Rings", description="Rings of quads around a new region that are smoothed with it", default=1, min=0, max=MAXIMUM_BUFFER_RINGS)
+    problems: CollectionProperty(type=HybridMeshProblem)
+    problem_index: IntProperty(name="Problem", min=0)
+    summary: StringProperty(name="Summary", description="What the last check found")
+
+
+def surface_of(obj, scene):
+    """The mesh object that an object stands for where layouts are drawn: itself, or what it is a layout, a mark or the preview of; or None."""
+    if obj is None:
+        return None
+    if _kind(obj) != "NONE":
+        surface = obj.hybrid_mesh_layout.surface
+    elif obj.type == "MESH" and obj.is_property_set("hybrid_mesh") and obj.hybrid_mesh.role == "PREVIEW":
+        hierarchy = hierarchy_of(obj)
+        surface = hierarchy.hybrid_mesh.source if hierarchy is not None else None
+    else:
+        surface = obj
+    return surface if surface is not None and surface.type == "MESH" and scene.objects.get(surface.name) == surface else None
+
+
+def layout_of(surface, scene, kind="DRAWN"):
+    """The object of a kind that belongs to a mesh object, or None."""
+    found = (obj for obj in scene.objects if strokes.is_grease_pencil(obj) and _kind(obj) == kind and obj.hybrid_mesh_layout.surface == surface)
+    return min(found, key=lambda obj: obj.name, default=None)
+
+
+def is_level(obj):
+    return obj is not None and obj.is_property_set("hybrid_mesh") and obj.hybrid_mesh.role == "LEVEL" and obj.hybrid_mesh.hierarchy is not None
+
+
+def _kind(obj):
+    # Asked first, because reading a property group that was never set leaves an empty one behind.
+    return obj.hybrid_mesh_layout.kind if obj.is_property_set("hybrid_mesh_layout") else "NONE"
+
+
+def register():
+    bpy.types.Object.hybrid_mesh_layout = PointerProperty(type=HybridMeshLayout)
+
+
+def unregister():
+    del bpy.types.Object.hybrid_mesh_layout

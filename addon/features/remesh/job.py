@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every operator that remeshes has in common: the native work as a task, and its result as a hierarchy of objects."""
+
+import json
+
+from ...bridge import arrays, levels, meshes, placement, transfer
+from ...core.native import native
+from ...core.tasks import Task
+from ...core.version import VERSION
+from ...jobs import NativeJobOperator
+from ..levels import properties as hierarchy_properties
+
+
+def remesh_task(obj, depsgraph, settings, plan=""):
+    """A task that remeshes an object with RemeshSettings, by a plan if there is one. An object that cannot be read is a task that fails."""
+    try:
+        source = meshes.read_source(obj, depsgraph, transfer.collect)
+    except (meshes.SourceError, arrays.MatrixError) as error:
+        return Task(obj.name, _refusal(error))
+    return source_task(obj.name, source, settings, plan)
+
+
+def source_task(name, source, settings, plan=""):
+    """A task that remeshes a meshes.Source, which was read of the object of that name."""
+    module, values = native(), settings.native()
+    if plan:
+        values["plan"] = plan
+    return Task(name, lambda: module.start_remesh(*source.mesh, values), (source, settings))
+
+
+class RemeshJobOperator(NativeJobOperator):
+    """Base of operators whose tasks are remesh_task()s. Subclasses have hides_source(context)."""
+
+    def finish(self, context, results):
+        # Everything is looked up by name again: objects may have gone while the work ran.
+        sources = []
+        for task, _ in results:
+            if task.name not in context.scene.objects:
+                raise ValueError(f"{task.name}: the object is gone from the scene; nothing was made")
+            sources.append(context.scene.objects[task.name])
+        built = [_build(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)]
+        _select(context, [one.preview for one in built])
+        if self.hides_source(context):
+            for obj in sources:
+                obj.hide_set(True)
+        for one in built:
+            self.report({"INFO"}, _line(one))
+        for task, result in results:
+            for warning in json.loads(result.report).get("warnings", []):
+                self.report({"WARNING"}, f"{task.name}: {warning}")
+
+    def hides_source(self, context):
+        raise NotImplementedError
+
+
+def _refusal(error):
+    """A start that fails: the object is named among the errors, and the others are done."""
+
+    def start():
+        raise error
+
+    return start
+
+
+def _build(context, obj, result, source, settings):
+    hierarchy = result.hierarchy
+    parts = [(name, hierarchy.level(name)) for name in hierarchy.level_names]
+    carry = transfer.carrier(source, result.repaired())
+    built = levels.build(obj.name, parts, source.matrix, context.scene, placement.same_place(obj), obj, carry)
+    report = json.loads(result.report)
+    report["version"] = VERSION
+    report["settings"] = settings.reported()
+    hierarchy_properties.describe(built, obj, report, getattr(result, "plan", ""))
+    levels.show_preview_only(built)
+    return built
+
+
+def _select(context, objects):
+    for obj in context.selected_objects:
+        obj.select_set(False)
+    for obj in objects:
+        obj.select_set(True)
+    context.view_layer.objects.active = objects[-1]
+
+
+def _line(built):
+    quality = hierarchy_properties.quality_of(built.collection)
+    figures = [f"{quality['vertices']:,} vertices"] if quality["vertices"] is not None else []
+    if quality["l2"] is not None:
+        figures.append(f"L2 {quality['l2']:.2e}")
+    return f"{built.collection.name}: {', '.join([f'{len(built.levels)} levels', *figures])}"

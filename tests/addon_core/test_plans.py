@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import json
+
+import numpy
+import pytest
+from hybrid_mesh.core import plans
+
+PLAN = json.dumps({"format": "hybrid-mesh plan", "version": 1, "base": {"quads": [[0, 1, 2, 3]]}, "operations": [], "later": "kept"})
+LINE = numpy.array([[0, 0, 0.1], [1, 2, 1 / 3]])
+
+
+def operation(**changes):
+    values = {"level": 2, "addresses": ["12.0.3"], "strokes": [(LINE, "tight")], "buffer_rings": 1, **changes}
+    return plans.repatch_operation(**values)
+
+
+def test_an_address_names_every_child_on_the_way():
+    assert plans.address(12, 1) == "12"
+    assert plans.address(12, 4 + 2) == "12.2"
+    assert plans.address(numpy.int32(12), numpy.int32(16 + 0 * 4 + 3)) == "12.0.3"
+
+
+def test_addresses_are_unique():
+    deep = [plans.address(0, path) for depth in range(5) for path in range(4**depth, 2 * 4**depth)]
+    assert len(set(deep)) == len(deep) == sum(4**depth for depth in range(5))
+    assert all(len(plans.digits(4**depth)) == depth for depth in range(15))
+
+
+@pytest.mark.parametrize("root, path", [(-1, 1), (0, 0), (0, -1), (0, 2), (0, 3), (0, 8)])
+def test_what_is_no_address(root, path):
+    with pytest.raises(plans.PlanError):
+        plans.address(root, path)
+
+
+def test_quads_of_a_level_that_has_inserted_roots():
+    # Roots 0 and 1 are of the base domain, root 7 was inserted at level 1.
+    levels = [(1, [0, 0, 7], [4, 5, 1]), (0, [0, 1], [1, 1]), (2, [0, 7, 7], [16, 4, 7])]
+    of_root = plans.root_levels(levels)
+    assert of_root == {0: 0, 1: 0, 7: 1}
+    assert plans.quad_addresses(2, [7, 0, 7], [7, 16, 7], of_root) == ["0.0.0", "7.3"]
+    assert plans.quad_addresses(1, [0, 7], [4, 1], of_root) == ["0.0", "7"]
+    for roots, paths in (([0], [4]), ([7], [16]), ([0, 0], [16, 1])):
+        with pytest.raises(plans.PlanError, match="another level"):
+            plans.quad_addresses(2, roots, paths, of_root)
+    with pytest.raises(plans.PlanError, match="another level"):
+        plans.quad_addresses(1, [3], [16], {})
+    with pytest.raises(plans.PlanError, match="selected"):
+        plans.quad_addresses(1, [], [], of_root)
+
+
+def test_addresses_are_in_the_order_of_numbers():
+    assert plans.quad_addresses(1, [10, 9, 9], [4, 7, 5], {9: 0, 10: 0}) == ["9.1", "9.3", "10.0"]
+
+
+def test_an_operation_is_plain_json_with_exact_points():
+    one = operation(strokes=[(LINE, "tight"), ([(1, 2, 3)], "drawn")], addresses=("12.0.3", "4"))
+    assert json.loads(json.dumps(one)) == one
+    assert one == {
+        "level": 2,
+        "quads": ["12.0.3", "4"],
+        "curves": [{"points": LINE.tolist(), "fit": "tight"}, {"points": [[1.0, 2.0, 3.0]], "fit": "drawn"}],
+        "buffer_rings": 1,
+    }
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"level": -1}, "level"),
+        ({"level": 1.5}, "level"),
+        ({"addresses": []}, "no quads"),
+        ({"strokes": []}, "no curves"),
+        ({"buffer_rings": 9}, "buffer rings"),
+        ({"buffer_rings": -1}, "buffer rings"),
+        ({"buffer_rings": True}, "buffer rings"),
+        ({"strokes": [(LINE, "loose")]}, "loose"),
+        ({"strokes": [(LINE, "tight"), ([[0, 0, float("nan")]], "tight")]}, "stroke 1"),
+        ({"strokes": [(LINE[:, :2], "tight")]}, "stroke 0"),
+    ],
+)
+def test_what_is_no_operation(changes, message):
+    with pytest.raises(plans.PlanError, match=message):
+        operation(**changes)
+
+
+def test_operations_are_appended_and_the_rest_is_kept():
+    first, second = operation(), operation(level=3)
+    text = plans.with_operation(plans.with_operation(PLAN, first), second)
+    assert json.loads(text) == {**json.loads(PLAN), "operations": [first, second]}
+    assert json.loads(PLAN)["operations"] == []
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "3", "{}", PLAN.replace("1", "2", 1), PLAN.replace("plan", "report"), PLAN.replace("[]", "{}")])
+def test_what_is_no_plan(text):
+    with pytest.raises(plans.PlanError):
+        plans.with_operation(text, operation())
