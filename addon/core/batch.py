@@ -137,7 +137,7 @@ class Batch:
         options = self.options
         if item.error:
             raise WorkerFailed(item.error)
-        settings = options.settings.reported()
+        settings = options.settings.identity()
         fingerprint = reports.resume_hash(reports.file_chunks(item.arrays or item.path), settings, VERSION)
         if options.resume:
             report = self._finished(item, fingerprint)

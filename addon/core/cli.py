@@ -8,14 +8,16 @@ import signal
 import sys
 
 from . import inputs as input_files
+from . import plans
 from .batch import Batch, BatchOptions, OutputError
+from .native import explain
 from .process import Processes, WorkerFailed, bpy_available
 from .settings import FACES, RemeshSettings, SettingsError
 from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
 LATER_COMMANDS = ("encode", "decode", "bench")
-LATER_OPTIONS = ("--plan", "--symmetry", "--features", "--topology")
+LATER_OPTIONS = ("--symmetry", "--features", "--topology")
 PROGRAM = "hybrid-mesh"
 
 
@@ -76,6 +78,7 @@ def remesh(arguments):
         semi_regular=arguments.semi_regular,
         drop_components=arguments.drop_components,
         strict=arguments.strict,
+        plan=_read_plan(arguments.plan) if arguments.plan else "",
         seed=arguments.seed,
         threads=arguments.threads,
     ).validate()
@@ -93,6 +96,19 @@ def remesh(arguments):
     except OutputError as error:
         _fail(str(error))
         return FAILED
+
+
+def _read_plan(path):
+    """The text of a plan's file, which is looked at before anything starts."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        plans.parse(text)
+    except (OSError, UnicodeDecodeError) as error:
+        raise WrongArguments(f"{path}: {explain(error, path)}") from error
+    except plans.PlanError as error:
+        raise WrongArguments(f"{path}: {error}") from error
+    return text
 
 
 def compare(arguments):
@@ -142,7 +158,7 @@ def _parser():
     command = commands.add_parser("remesh", help="a quad hierarchy of every input", allow_abbrev=False)
     command.set_defaults(command=remesh)
     command.add_argument("inputs", nargs="+", metavar="INPUT", help=".ply, .obj, .off, .stl; in Blender also .blend (each mesh object is an input)")
-    command.add_argument("--output", required=True, metavar="DIR", help="folder for NAME.hmesh, NAME.report.json and summary.csv")
+    command.add_argument("--output", required=True, metavar="DIR", help="folder for NAME.hmesh, NAME.plan.json, NAME.report.json and summary.csv")
     bounds = command.add_argument_group("bounds", "without any, the remesh has as many vertices as the input")
     bounds.add_argument("--vertices", type=_whole(1), metavar="N", help="hard upper bound on the final mesh's vertices")
     bounds.add_argument("--error", type=_positive, metavar="E", help="stop at this L2 distance, a fraction of the bounding-box diagonal")
@@ -152,6 +168,7 @@ def _parser():
     shape.add_argument("--faces", choices=FACES, default="quads", help="adaptive: pure quads (default), n-gons or triangles where sizes meet")
     shape.add_argument("--base-quads", type=_base, default="auto", metavar="auto|min|N", help="quads of the base domain (default auto: fits the budget)")
     shape.add_argument("--stretch", type=float, default=4.0, metavar="X", help="grow skin where the map is stretched more than this (default 4)")
+    shape.add_argument("--plan", metavar="FILE.json", help="take base quads and irregular operations from a plan, as NAME.plan.json of another remesh")
     shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
     shape.add_argument("--seed", type=_whole(0), default=1, metavar="N", help="of what is arbitrary (default 1)")
     surface = command.add_argument_group("input surface")

@@ -36,7 +36,7 @@ class Outputs:
 
     def suffixes(self):
         """The report is last: where it stands, everything stands."""
-        suffixes = [".hmesh"]
+        suffixes = [".hmesh", ".plan.json"]
         suffixes += [f".{form}" for form in self.exports]
         if self.repaired:
             suffixes += [f".repaired.{form}" for form in self.exports or ("ply",)]

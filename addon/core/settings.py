@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a remesh, checked in one place for the command line, the operator and scripts."""
 
+import hashlib
 import math
 from dataclasses import asdict, dataclass, fields, replace
 
@@ -26,6 +27,7 @@ OPTION_NAMES = {
     "semi_regular": "--semi-regular",
     "drop_components": "--drop-components",
     "strict": "--strict",
+    "plan": "--plan",
     "seed": "--seed",
     "threads": "--threads",
 }
@@ -47,6 +49,7 @@ class RemeshSettings:
     semi_regular: bool = False  # no irregular operations
     drop_components: float = 0.0  # components below this fraction of the area are removed
     strict: bool = False  # refuse input that needs repair
+    plan: str = ""  # JSON text of a plan (see core/plans.py) that decides base and irregular operations; empty: they are searched for
     seed: int = 1
     threads: int = 0  # 0 = all cores; never changes the result
 
@@ -64,6 +67,8 @@ class RemeshSettings:
             _whole("base", self.base, 1, MAXIMUM_BASE_QUADS, "auto, min or")
         _number("stretch_threshold", self.stretch_threshold, 1, 1e6, "from 1 to 1000000")
         _number("drop_components", self.drop_components, 0, 1, "at least 0 and below 1 (a fraction of the whole area)", open_end=True)
+        if not isinstance(self.plan, str):
+            raise SettingsError("--plan must be a plan's text")
         _whole("seed", self.seed, 0, MAXIMUM_SEED)
         _whole("threads", self.threads, 0, MAXIMUM_THREADS, "0 for all cores, or")
         return self
@@ -73,10 +78,14 @@ class RemeshSettings:
         return asdict(self)
 
     def reported(self):
-        """What the report states and the resume hash covers: everything that can change the result."""
+        """What the report states: everything that can change the result but the plan, which has a file of its own."""
         values = asdict(self)
-        del values["threads"]
+        del values["threads"], values["plan"]
         return values
+
+    def identity(self):
+        """reported(), and which plan it is if there is one: what a resumed run compares."""
+        return {**self.reported(), **({"plan": hashlib.sha256(self.plan.encode()).hexdigest()} if self.plan else {})}
 
 
 PRESETS = {

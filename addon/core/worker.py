@@ -47,6 +47,7 @@ def remesh(job):
     stem = os.path.join(job["folder"], job["name"])
     report = finished_report(result.report, job, settings)
     result.hierarchy.save(stem + ".hmesh", json.dumps({"name": job["name"], "settings": settings.reported(), "version": VERSION}))
+    write_text(stem + ".plan.json", result.plan)
     if job["exports"]:
         final = result.final_mesh()
         for form in job["exports"]:

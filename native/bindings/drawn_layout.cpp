@@ -8,6 +8,7 @@
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
 #include "bindings/job.h"
+#include "remesh/plan.h"
 #include "surface/repair.h"
 
 namespace py = pybind11;
@@ -106,17 +107,70 @@ py::dict to_dict(const DrawnLayout& drawn) {
   return result;
 }
 
-py::dict make_layout_from_arrays(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
+DrawnLayout drawn_layout(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
   const PolygonSoup soup = soup_from_faces(points, faces);
   std::vector<DrawnStroke> drawn;
   for (const auto& s : strokes) drawn.push_back(stroke_from_dict(s, drawn.size()));
   DrawnLayoutOptions options;
   options.snap = snap;
-  return to_dict(run_interruptibly([&](Context& context) {
+  return run_interruptibly([&](Context& context) {
     RepairReport report;
     const Progress progress(context);
     return make_layout(repair(soup, RepairOptions(), report, progress.part(0, 0.2)), drawn, options, progress.part(0.2, 1));
-  }));
+  });
+}
+
+// Faces that a base domain cannot have.
+void find_faces_without_quads(DrawnLayout& drawn) {
+  const PatchLayout& layout = drawn.layout;
+  for (std::size_t f = 0; f < layout.faces.size(); ++f) {
+    const int sides = layout.faces[f].side_count();
+    if (sides == 4) continue;
+    LayoutProblem problem{LayoutProblem::Kind::ManySides, "a face has " + std::to_string(sides) + " sides: curves across it must divide it into faces of four", {}};
+    problem.face = static_cast<int>(f);
+    for (const PatchLayout::Side& s : layout.faces[f].cycles.front())
+      for (const int v : layout.points(s)) problem.where.push_back(layout.mesh.points[v]);
+    drawn.problems.push_back(std::move(problem));
+  }
+}
+
+LayoutOutline outline_of(const PatchLayout& layout) {
+  constexpr std::size_t parts = 12;
+  LayoutOutline outline;
+  for (const int v : layout.nodes) outline.nodes.push_back(layout.mesh.points[v]);
+  std::vector<PatchSide> of(2 * layout.curves.size());
+  const auto place = [](const PatchLayout::Side& s, bool same) { return 2 * s.curve + (s.forward == same ? 1 : 0); };
+  for (std::size_t f = 0; f < layout.faces.size(); ++f)
+    for (int i = 0; i < 4; ++i) of[place(layout.faces[f].cycles[0][i], true)] = {static_cast<int>(f), i};
+  for (const PatchLayout::Face& face : layout.faces) {
+    auto& quad = outline.quads.emplace_back();
+    auto& neighbours = outline.neighbours.emplace_back();
+    auto& sides = outline.sides.emplace_back();
+    for (int i = 0; i < 4; ++i) {
+      const PatchLayout::Side& s = face.cycles[0][i];
+      quad[i] = layout.start(s);
+      neighbours[i] = of[place(s, false)];
+      if (!s.forward) continue;
+      const std::vector<int> points = layout.points(s);
+      const std::size_t last = points.size() - 1, count = std::min(parts, last);
+      for (std::size_t k = 0; k <= count; ++k) sides[i].push_back(layout.mesh.points[points[k * last / count]]);
+    }
+  }
+  return outline;
+}
+
+py::dict make_layout_from_arrays(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
+  return to_dict(drawn_layout(points, faces, strokes, snap));
+}
+
+py::dict layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
+  DrawnLayout drawn = drawn_layout(points, faces, strokes, snap);
+  if (drawn.problems.empty()) find_faces_without_quads(drawn);
+  py::dict result = to_dict(drawn);
+  Plan plan;
+  if (drawn.problems.empty()) plan.base = outline_of(drawn.layout);
+  result["plan"] = drawn.problems.empty() ? to_json(plan) : "";
+  return result;
 }
 
 }  // namespace
@@ -126,6 +180,8 @@ void bind_drawn_layout(py::module_& module) {
   module.def("make_layout", &make_layout_from_arrays, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
              "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces and problems. A stroke is a dict of points (n, 3) and fit, 'tight' or "
              "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise.");
+  module.def("layout_plan", &layout_plan, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
+             "The same, and its faces as the base domain of a plan: the entry plan is JSON text, empty if there are problems.");
 }
 
 }  // namespace hybrid_mesh

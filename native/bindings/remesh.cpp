@@ -50,6 +50,11 @@ class Setting {
     return value_.cast<bool>();
   }
 
+  std::string text() const {
+    if (!py::isinstance<py::str>(value_)) refuse("text");
+    return value_.cast<std::string>();
+  }
+
   bool is(const char* word) const { return py::isinstance<py::str>(value_) && value_.cast<std::string>() == word; }
 
   [[noreturn]] void refuse(const std::string& expected) const {
@@ -104,6 +109,8 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
   } else if (key == "drop_components") {
     options.drop_components = setting.number();
     if (!(options.drop_components >= 0 && options.drop_components < 1)) setting.refuse("at least 0 and less than 1");
+  } else if (key == "plan") {
+    options.plan = setting.text();
   } else if (key == "strict") {
     options.strict = setting.flag();
   } else if (key == "seed") {
@@ -150,6 +157,9 @@ void bind_remesh(py::module_& module) {
           "report",
           [](const PythonResult& result) { return result.result->report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); },
           "JSON text.")
+      .def_property_readonly(
+          "plan", [](const PythonResult& result) { return result.result->plan; },
+          "JSON text: what decided the quads. With it as a setting the same surface is remeshed in the same way, and others alike.")
       .def_readonly("hierarchy", &PythonResult::hierarchy, "The levels.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def(

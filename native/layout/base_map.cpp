@@ -2,6 +2,7 @@
 #include "layout/base_map.h"
 
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "parameterization/initial_map.h"
@@ -35,36 +36,70 @@ LayoutSearchResult repeat_edits(CarriedMap map, const std::vector<LevelEdits>& e
   mapped.corners = map_patches(mapped.surface, progress.part(0, 0.2));
   map.charts = smooth(mapped, options, progress.part(0.2, 1));
   map.layout = std::move(mapped.surface);
-  LayoutSearchResult result{edits, {}};
+  LayoutSearchResult result{edits, {}, {}};
   result.stages.push_back({0, std::move(map)});
   return result;
+}
+
+BaseMap carried(LayoutSearchResult found, const GlobalMapOptions& options, const Progress& progress) {
+  BaseMap out;
+  for (LayoutSearchResult::Stage& stage : found.stages) {
+    stage.map.carry(kInfinity, options, progress);
+    out.levels.push_back({stage.level, std::move(stage.map.layout), std::move(stage.map.charts)});
+  }
+  out.edits = std::move(found.edits);
+  out.script = std::move(found.script);
+  return out;
+}
+
+// A coarse surface may be too coarse for the map: its triangles would have to bend. Then a finer one is taken, at last the surface itself. Where skin is to be grown (`finer`), a
+// base of more quads serves better: that is left to the caller.
+template <class Search>
+BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, bool finer, const GlobalMapOptions& options, const Progress& progress,
+                           const Search& search) {
+  std::vector<LevelEdits> edits;
+  LayoutScript script;
+  for (const double factor : {1.0, 2.0, kInfinity}) {
+    const double begin = factor == 1 ? 0 : 0.7;
+    try {
+      CarriedMap map(surface, base.cut(factor * vertices / base.quads(), progress.part(begin, begin + 0.05)));
+      const bool first = edits.empty();
+      LayoutSearchResult found = first ? search(std::move(map), progress.part(begin + 0.05, begin == 0 ? 0.6 : 0.8)) : repeat_edits(std::move(map), edits, options, progress.part(begin + 0.05, 0.8));
+      edits = found.edits;
+      if (first) script = found.script;
+      BaseMap out = carried(std::move(found), options, progress.part(0.8, 1));
+      out.script = std::move(script);
+      return out;
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal || factor == kInfinity || finer) throw;
+    }
+  }
+  throw Error(ErrorCode::Internal, "no map of the base was tried");
 }
 
 }  // namespace
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
-  std::vector<LevelEdits> edits;
-  // A coarse surface may be too coarse for the map: its triangles would have to bend. Then a finer one is taken, at last the surface itself. Where skin is to be grown, a base of
-  // more quads serves better: that is left to the caller.
-  for (const double factor : {1.0, 2.0, kInfinity}) {
-    const double begin = factor == 1 ? 0 : 0.7;
-    try {
-      CarriedMap map(surface, base.cut(factor * options.vertices / base.quads(), progress.part(begin, begin + 0.05)));
-      LayoutSearchResult found = edits.empty() ? search_layout(std::move(map), options, progress.part(begin + 0.05, begin == 0 ? 0.6 : 0.8))
-                                               : repeat_edits(std::move(map), edits, options.map, progress.part(begin + 0.05, 0.8));
-      edits = std::move(found.edits);
-      BaseMap out;
-      for (LayoutSearchResult::Stage& stage : found.stages) {
-        stage.map.carry(kInfinity, options.map, progress.part(0.8, 1));
-        out.levels.push_back({stage.level, std::move(stage.map.layout), std::move(stage.map.charts)});
-      }
-      out.edits = std::move(edits);
-      return out;
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal || factor == kInfinity || !options.finer.empty()) throw;
-    }
-  }
-  throw Error(ErrorCode::Internal, "no map of the base was tried");
+  return map_coarse_to_fine(surface, base, options.vertices, !options.finer.empty(), options.map, progress,
+                            [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
+}
+
+BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress) {
+  GlobalMapOptions options;
+  options.vertices_a_quad = script.levels.front().vertices_a_quad;
+  return map_coarse_to_fine(surface, base, script.levels.front().vertices, script.levels.size() > 1, options, progress,
+                            [&](CarriedMap map, const Progress& part) { return repeat_search(std::move(map), script, part); });
+}
+
+BaseMap map_to_base(const TriangleSurface& surface, PatchedSurface base, const LayoutScript& script, const Progress& progress) {
+  CutSurface cut;
+  cut.coarse = surface;
+  for (std::size_t f = 0; f < surface.faces.size(); ++f) cut.coarse.source_face[f] = static_cast<int>(f);
+  cut.collapsed = EditMesh(surface);
+  cut.vertex.resize(surface.points.size());
+  std::iota(cut.vertex.begin(), cut.vertex.end(), 0);
+  cut.patches = std::move(base);
+  return carried(repeat_search(CarriedMap(surface, std::move(cut)), script, progress), GlobalMapOptions(), progress);
 }
 
 }  // namespace hybrid_mesh

@@ -12,7 +12,8 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr std::array<double, 3> kSamples{0.15, 0.5, 0.85};  // of a gap
-constexpr double kCrossingCost = 0.3;  // of the diagonal: a way that has to cross curves crosses no more than that makes worth while
+constexpr double kCrossingCost = 0.3;  // of the diagonal, at most the guide's length: a way that has to cross curves crosses no more than that makes worth while
+constexpr double kMostDetour = 4;      // guides' lengths: a longer way that respects the curves is not looked for, or the whole surface would be searched wherever there is none
 constexpr double kDetourCost = 8;      // a way far from its guide counts as so many times longer
 constexpr double kFar = 0.05;          // of the diagonal
 
@@ -58,7 +59,7 @@ void CurveSearch::reach(const SurfaceCurves::Gap& gap, int previous, const Vec3&
 // Over a side that is a curve.
 void CurveSearch::reach_over(int h, int previous, const Vec3& from, double cost) {
   const int c = curves_.along(curves_.mesh().edge[h]);
-  if (barriers_ == Barriers::Cross && c >= 0 && curves_.mesh().opposite[h] >= 0) reach({h, 0, -1, 0, 1, -1}, previous, from, cost + kCrossingCost, c);
+  if (barriers_ == Barriers::Cross && c >= 0 && curves_.mesh().opposite[h] >= 0) reach({h, 0, -1, 0, 1, -1}, previous, from, cost + crossing_cost_, c);
 }
 
 void CurveSearch::leave(int a, const CurveSector& sector) {
@@ -97,7 +98,7 @@ void CurveSearch::go_on(int i) {
     SurfaceCurves::Gap beside = gap;
     beside.half_edge = h;
     beside.from = 1 - gap.to, beside.to = 1 - gap.from;
-    reach(beside, i, state.at, state.cost + kCrossingCost, curves_.crossing(gap.rank > state.gap.rank ? gap.below : state.gap.below).curve);
+    reach(beside, i, state.at, state.cost + crossing_cost_, curves_.crossing(gap.rank > state.gap.rank ? gap.below : state.gap.below).curve);
   }
   for (const int side : {EditMesh::next(o), EditMesh::prev(o)}) reach_over(side, i, state.at, state.cost);
 }
@@ -112,11 +113,19 @@ std::optional<CurveWay> CurveSearch::operator()(int a, int b, const CurveSector&
   best_first_.resize(kSamples.size() * mesh.origin.size(), {0, 0});
 
   double shortest = std::numeric_limits<double>::infinity();
+  crossing_cost_ = kCrossingCost;
+  double most = shortest;
+  if (!guide_.empty()) {
+    double length = (guide_.front() - curves_.points()[a]).norm() + (guide_.back() - target_).norm();
+    for (std::size_t i = 1; i < guide_.size(); ++i) length += (guide_[i] - guide_[i - 1]).norm();
+    crossing_cost_ = std::min(crossing_cost_, length);
+    if (barriers_ == Barriers::Respect) most = kMostDetour * length;
+  }
   int last = -1;
   for (const int g : leaving.spokes)
     if (mesh.to(g) == b && arriving.spokes.count(mesh.opposite[g])) shortest = price(curves_.points()[a], target_);
   leave(a, leaving);
-  while (!queue_.empty() && queue_.front().estimate < shortest) {
+  while (!queue_.empty() && queue_.front().estimate < std::min(shortest, most)) {
     const int i = queue_.front().state;
     std::pop_heap(queue_.begin(), queue_.end(), std::greater<Entry>());
     queue_.pop_back();
@@ -140,7 +149,7 @@ std::optional<CurveWay> CurveSearch::operator()(int a, int b, const CurveSector&
     if (states_[i].crossed >= 0) way.crossed.insert(states_[i].crossed);
   }
   std::reverse(way.gaps.begin(), way.gaps.end());
-  if (barriers == Barriers::Respect) erase_loops(way.gaps);
+  if (way.crossed.empty()) erase_loops(way.gaps);
   return way;
 }
 

@@ -64,6 +64,7 @@ class CurveSearch {
   Barriers barriers_ = Barriers::Respect;
   std::vector<Vec3> guide_;
   Vec3 target_;
+  double crossing_cost_ = 0;
   std::vector<State> states_;
   std::vector<Entry> queue_;                        // a heap
   SurfaceCurves::FaceCells cells_;                  // of the face that was entered last

@@ -26,11 +26,13 @@ struct Candidate {
 
 class LayoutSearch {
  public:
-  explicit LayoutSearch(CarriedMap map) : best_(std::move(map)) {}
+  // With a script its decisions are taken, and none looked for.
+  explicit LayoutSearch(CarriedMap map, const LayoutScript* script = nullptr) : best_(std::move(map)), script_(script) {}
 
   LayoutSearchResult run(const LayoutSearchOptions& options, const Progress& progress) {
     const double parts = 2.0 + static_cast<double>(options.finer.size());
     options_ = &options;
+    begin_level();
     mapped_.corners = map_patches(best_.layout, progress.part(0, 0.05));
     mapped_.surface = best_.layout;
     smooth(options.map, progress.part(0.05, 1 / parts));
@@ -55,15 +57,20 @@ class LayoutSearch {
       least_ *= 4;
       best_edits_.emplace_back();
       edits_ = best_edits_;
-      if (finer.relayout > 0) relayout(progress);
+      begin_level();
+      if (script_ ? !scripted().even.empty() : finer.relayout > 0) relayout(progress);
       improve(progress.part(begin + 0.2 / parts, begin + 1 / parts));
     }
     if (result.stages.empty() || !best_edits_.back().empty()) keep(std::move(best_), progress.part(1, 1));
     result.edits = std::move(best_edits_);
+    result.script = std::move(made_);
     return result;
   }
 
  private:
+  void begin_level() { made_.levels.push_back({options_->vertices, options_->map.vertices_a_quad, {}, {}}); }
+  const LayoutScript::Level& scripted() const { return script_->levels[made_.levels.size() - 1]; }
+
   // Patches that share a node with one of the given, and the given.
   std::vector<char> dilated(const std::vector<char>& in) const {
     const PatchedSurface& s = mapped_.surface;
@@ -133,45 +140,106 @@ class LayoutSearch {
     return regions;
   }
 
+  static LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region) {
+    constexpr std::size_t parts = 4;
+    LayoutOutline outline;
+    outline.quads = drawn.edit.quads;
+    outline.nodes.resize(region.corners.size() + drawn.edit.inner_nodes);
+    outline.sides.resize(outline.quads.size());
+    for (std::size_t q = 0; q < outline.quads.size(); ++q)
+      for (int i = 0; i < 4; ++i) {
+        const std::vector<int>& side = drawn.piece.sides[q][i];
+        const auto at = [&](std::size_t k) { return drawn.piece.mesh.points[side[k]]; };
+        outline.nodes[outline.quads[q][i]] = at(0);
+        const std::size_t last = side.size() - 1, count = std::min(parts, last);
+        // Each line once; the boundary's is known.
+        if (outline.quads[q][i] > outline.quads[q][(i + 1) % 4]) continue;
+        for (std::size_t k = 0; k <= count; ++k) outline.sides[q][i].push_back(at(k * last / count));
+      }
+    return outline;
+  }
+
+  // The region cut along the sides of an outline's quads; without patches if there is no way to lay them out.
+  PatchedSurface laid_out(LayoutOutline outline, const PatchRegion& region, const Progress& progress) const {
+    const PatchedPart part = part_of(mapped_.surface, region.patches);
+    for (std::size_t k = 0; k < region.corners.size(); ++k) {
+      const PatchSide& s = region.boundary[k];
+      const auto patch = std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin();
+      outline.nodes[k] = part.surface.mesh.points[part.surface.sides[patch][s.side].front()];
+    }
+    const TransferredLayout laid = transfer_layout(part.surface.mesh, outline, progress);
+    return laid.failure.empty() ? to_patched_surface(laid.layout) : PatchedSurface();
+  }
+
+  // Regions whose quads are poor, and even quads for them.
+  std::vector<LayoutScript::EvenLayout> find_even(std::vector<DrawnEdit>& drawn, const Progress& progress) const {
+    const PatchedSurface& s = mapped_.surface;
+    std::vector<double> area(s.patch_count(), 0);
+    double all = 0;
+    for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) {
+      const auto& c = s.mesh.faces[f];
+      const double a = 0.5 * (s.mesh.points[c[1]] - s.mesh.points[c[0]]).cross(s.mesh.points[c[2]] - s.mesh.points[c[0]]).norm();
+      area[s.patch[f]] += a;
+      all += a;
+    }
+    std::vector<char> poor(s.patch_count(), 0);
+    for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->relayout || energy_[q] * all > options_->relayout * area[q] * s.patch_count();
+    std::vector<LayoutScript::EvenLayout> chosen;
+    for (const PatchRegion& region : disks(dilated(poor))) {
+      double wanted = 0;
+      for (const int q : region.patches) wanted += area[q] / all * (options_->even_quads > 0 ? options_->even_quads : s.patch_count());
+      wanted = std::max(wanted, 1.0);
+      std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
+      if (!edit) continue;
+      chosen.push_back({edit->edit, wanted, outline_of(*edit, region)});
+      drawn.push_back(std::move(*edit));
+    }
+    return chosen;
+  }
+
+  // The same quads as a script has them, along the same lines if this is the surface that it was made on; else their lines are left to the map.
+  std::vector<LayoutScript::EvenLayout> repeat_even(std::vector<DrawnEdit>& drawn, const Progress& progress) const {
+    for (const LayoutScript::EvenLayout& even : scripted().even) {
+      DrawnEdit edit{even.edit, {}};
+      const std::optional<PatchRegion> region = make_region(mapped_.surface, even.edit.patches, even.edit.start);
+      if (!region) throw Error(ErrorCode::Internal, "the quads of an operation are no disk");
+      std::optional<DrawnEdit> found = even.quads > 0 ? even_edit(mapped_.surface, *region, even.quads, 1, progress) : std::nullopt;
+      if (found && found->edit.quads == even.edit.quads)
+        edit = std::move(*found);
+      else if (!even.outline.nodes.empty())
+        edit.piece = laid_out(even.outline, *region, progress);
+      drawn.push_back(std::move(edit));
+    }
+    return scripted().even;
+  }
+
   void relayout(const Progress& progress) {
     try {
       cut(progress);
-      const PatchedSurface& s = mapped_.surface;
-      std::vector<double> area(s.patch_count(), 0);
-      double all = 0;
-      for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) {
-        const auto& c = s.mesh.faces[f];
-        const double a = 0.5 * (s.mesh.points[c[1]] - s.mesh.points[c[0]]).cross(s.mesh.points[c[2]] - s.mesh.points[c[0]]).norm();
-        area[s.patch[f]] += a;
-        all += a;
-      }
-      std::vector<char> poor(s.patch_count(), 0);
-      for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->relayout || energy_[q] * all > options_->relayout * area[q] * s.patch_count();
-      std::vector<DrawnEdit> chosen;
-      for (const PatchRegion& region : disks(dilated(poor))) {
-        double wanted = 0;
-        for (const int q : region.patches) wanted += area[q] / all * (options_->even_quads > 0 ? options_->even_quads : s.patch_count());
-        wanted = std::max(wanted, 1.0);
-        std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
-        if (edit) chosen.push_back(std::move(*edit));
-      }
-      for (std::size_t i = 0; i < chosen.size(); ++i) {
-        edits_.back().push_back(chosen[i].edit);
-        const LayoutChange change = apply_edit(mapped_, std::move(chosen[i]));
+      std::vector<DrawnEdit> drawn;
+      std::vector<LayoutScript::EvenLayout> chosen = script_ ? repeat_even(drawn, progress) : find_even(drawn, progress);
+      for (std::size_t i = 0; i < drawn.size(); ++i) {
+        edits_.back().push_back(drawn[i].edit);
+        const bool has_lines = !drawn[i].piece.patch.empty();
+        const LayoutChange change = has_lines ? apply_edit(mapped_, std::move(drawn[i])) : apply_edit(mapped_, drawn[i].edit);
         map_patches(mapped_.surface, change.added, mapped_.corners, progress);
-        for (std::size_t k = i + 1; k < chosen.size(); ++k) chosen[k].edit = renumbered(std::move(chosen[k].edit), change);
+        for (std::size_t k = i + 1; k < drawn.size(); ++k) drawn[k].edit = renumbered(std::move(drawn[k].edit), change);
       }
-      if (chosen.empty()) return;
+      if (drawn.empty()) return;
       smooth(options_->map, progress);
-      if (excess_ < least_) accept();
+      if (script_ || excess_ < least_) {
+        accept();
+        made_.levels.back().even = std::move(chosen);
+      }
     } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal) throw;
+      if (script_ || e.code() != ErrorCode::Internal) throw;
     }
     edits_ = best_edits_;
   }
 
   // Rounds of edits, and of smoothing after each, for as long as that gains.
   void improve(const Progress& progress) {
+    if (script_) return repeat_rounds(progress);
     for (int round = 0; round < options_->rounds; ++round) {
       const Progress part = progress.part(static_cast<double>(round) / options_->rounds, (round + 1.0) / options_->rounds);
       try {
@@ -181,14 +249,12 @@ class LayoutSearch {
           part.check();
           candidates[i].gain = measure_gain(candidates[i], part.part(0.1, 0.1));
         });
-        if (!apply_best(candidates, part)) return;
-        GlobalMapOptions map = options_->map;
-        // Most of the map is as it was the round before.
-        map.newton_steps /= 2;
-        map.cone_rounds /= 2;
-        smooth(map, part.part(0.6, 1));
+        const std::vector<LayoutEdit> chosen = choose_best(candidates);
+        if (chosen.empty()) return;
+        apply(chosen, part);
         if (!(excess_ < least_)) return;
         accept();
+        made_.levels.back().rounds.push_back(chosen);
       } catch (const Error& e) {
         // What was found before stays.
         if (e.code() != ErrorCode::Internal) throw;
@@ -196,6 +262,28 @@ class LayoutSearch {
       }
       part(1);
     }
+  }
+
+  void repeat_rounds(const Progress& progress) {
+    for (const std::vector<LayoutEdit>& round : scripted().rounds) {
+      cut(progress);
+      apply(round, progress);
+      accept();
+      made_.levels.back().rounds.push_back(round);
+    }
+  }
+
+  // Edits that do not shrink leave other patches' numbers alone.
+  void apply(const std::vector<LayoutEdit>& edits, const Progress& progress) {
+    for (const LayoutEdit& edit : edits) {
+      map_patches(mapped_.surface, apply_edit(mapped_, edit).added, mapped_.corners, progress.part(0.6, 0.6));
+      edits_.back().push_back(edit);
+    }
+    GlobalMapOptions map = options_->map;
+    // Most of the map is as it was the round before.
+    map.newton_steps /= 2;
+    map.cone_rounds /= 2;
+    smooth(map, progress.part(0.6, 1));
   }
 
   // Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
@@ -365,7 +453,7 @@ class LayoutSearch {
     }
   }
 
-  bool apply_best(std::vector<Candidate>& candidates, const Progress& progress) {
+  std::vector<LayoutEdit> choose_best(std::vector<Candidate>& candidates) const {
     std::stable_sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) { return worth(a) > worth(b); });
     const PatchedSurface& s = mapped_.surface;
     std::vector<char> touched(s.patch_count(), 0);
@@ -380,17 +468,14 @@ class LayoutSearch {
       size += c.edit.growth();
       chosen.push_back(c.edit);
     }
-    // Edits that do not shrink leave other patches' numbers alone.
-    for (const LayoutEdit& edit : chosen) {
-      map_patches(mapped_.surface, apply_edit(mapped_, edit).added, mapped_.corners, progress.part(1, 1));
-      edits_.back().push_back(edit);
-    }
-    return !chosen.empty();
+    return chosen;
   }
 
   double worth(const Candidate& c) const { return c.gain - options_->price * c.edit.growth() - options_->irregular_price * c.irregular; }
 
   CarriedMap best_;                // the best found
+  const LayoutScript* script_;
+  LayoutScript made_;
   std::optional<ChartMesh> fresh_;
   MappedSurface mapped_;           // cut along the best layout, or an edited one
   const LayoutSearchOptions* options_ = nullptr;  // of the present level
@@ -403,5 +488,17 @@ class LayoutSearch {
 }  // namespace
 
 LayoutSearchResult search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress) { return LayoutSearch(std::move(map)).run(options, progress); }
+
+LayoutSearchResult repeat_search(CarriedMap map, const LayoutScript& script, const Progress& progress) {
+  if (script.levels.empty()) throw Error(ErrorCode::Internal, "a script has no level");
+  std::vector<LayoutSearchOptions> levels(script.levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i].vertices = script.levels[i].vertices;
+    if (script.levels[i].vertices_a_quad > 0) levels[i].map.vertices_a_quad = script.levels[i].vertices_a_quad;
+  }
+  LayoutSearchOptions options = levels.front();
+  options.finer.assign(levels.begin() + 1, levels.end());
+  return LayoutSearch(std::move(map), &script).run(options, progress);
+}
 
 }  // namespace hybrid_mesh

@@ -5,6 +5,7 @@
 
 #include "base/context.h"
 #include "layout/carried_map.h"
+#include "layout/layout_transfer.h"
 #include "layout/region_layout.h"
 #include "parameterization/global_map.h"
 
@@ -26,8 +27,25 @@ struct LayoutSearchOptions {
 // Edits of one level's quads, first one first.
 using LevelEdits = std::vector<LayoutEdit>;
 
+// What a search has decided, level by level, so that it can be repeated without searching.
+struct LayoutScript {
+  // New quads of even size for a region; see even_edit().
+  struct EvenLayout {
+    LayoutEdit edit;
+    double quads = 0;        // 0: not to be found by even_edit()
+    LayoutOutline outline;   // the edit's quads where they lay in space, the region's corners first among the nodes; without nodes: not known
+  };
+  struct Level {
+    double vertices = 0, vertices_a_quad = 0;  // see LayoutSearchOptions
+    std::vector<EvenLayout> even;              // first; all named by the layout before any of them
+    std::vector<std::vector<LayoutEdit>> rounds;  // then; those of a round named by the layout before that
+  };
+  std::vector<Level> levels;
+};
+
 struct LayoutSearchResult {
   std::vector<LevelEdits> edits;  // a level each
+  LayoutScript script;            // the same, as it came about
   // The map of the base domain, and that of the quads of each finer level that was edited; carried to the surface if there are finer levels.
   struct Stage {
     int level;
@@ -40,5 +58,8 @@ struct LayoutSearchResult {
 // energy falls. Then the same with the quads quadrisected, as often as there are options for finer levels, each on a finer version of the surface. `map` comes with a cut surface.
 // Throws Error{Internal} where a map cannot be found or carried to the surface.
 LayoutSearchResult search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress);
+
+// Does what a search did on another surface or the same; on the same, with the same result. Throws Error{Internal} as above and where the layout has no such quads.
+LayoutSearchResult repeat_search(CarriedMap map, const LayoutScript& script, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -7,6 +7,7 @@
 #include <deque>
 #include <limits>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "base/error.h"
@@ -22,6 +23,8 @@ namespace {
 
 constexpr int kMostReplacements = 30;  // of one curve
 constexpr int kGuidePoints = 24;
+constexpr double kTellingNormal = 0.8; // length of the sum of unit sides' cross products at a node
+constexpr double kNear = 0.1;          // in diagonals
 constexpr double kFarOff = 1e6;        // in diagonals
 
 class LayoutTracer {
@@ -77,6 +80,39 @@ class LayoutTracer {
     return pair;
   }
 
+  // Given with the quad on its left or on its right.
+  std::vector<Vec3> line_of(const QuadComplex::Edge& e) const {
+    const std::vector<Vec3>& line = outline_.sides[e.left.patch][e.left.side];
+    if (!line.empty() || e.right.patch < 0) return line;
+    const std::vector<Vec3>& back = outline_.sides[e.right.patch][e.right.side];
+    return {back.rbegin(), back.rend()};
+  }
+  // From a node along the quad's side i, or against side i - 1.
+  Vec3 direction(int q, int i, bool forward) const {
+    const int side = forward ? i : (i + 3) % 4;
+    const int a = complex_.node(q, i), b = complex_.node(q, forward ? (i + 1) % 4 : side);
+    Vec3 towards = outline_.nodes[b];
+    if (const int e = complex_.edge_at(q, side); e >= 0 && !outline_.sides.empty()) {
+      const QuadComplex::Edge& edge = complex_.edge(e);
+      const std::vector<Vec3> line = line_of(edge);
+      if (line.size() > 1) towards = forward == complex_.is_left(q, side) ? line[1] : line[line.size() - 2];
+    }
+    return (towards - outline_.nodes[a]).normalized();
+  }
+  // Which way the surface faced at each node: zero where its quads do not tell.
+  std::vector<Vec3> node_normals() const {
+    std::vector<Vec3> normal(outline_.nodes.size(), Vec3::Zero());
+    for (int q = 0; q < complex_.quads(); ++q)
+      for (int i = 0; i < 4; ++i) normal[complex_.node(q, i)] += direction(q, i, true).cross(direction(q, i, false));
+    for (Vec3& n : normal) n = n.norm() > kTellingNormal ? n.normalized().eval() : Vec3::Zero();
+    return normal;
+  }
+  Vec3 normal_of(int f) const {
+    const auto& c = unit_.faces[f];
+    return (unit_.points[c[1]] - unit_.points[c[0]]).cross(unit_.points[c[2]] - unit_.points[c[0]]).normalized();
+  }
+  bool is_near(int f, const Vec3& p) const { return (unit_.points[unit_.faces[f][0]] - p).squaredNorm() < kNear * kNear; }
+
   bool place_nodes() {
     VertexPlacing placing(curves_);
     const int nodes = static_cast<int>(outline_.nodes.size());
@@ -120,11 +156,26 @@ class LayoutTracer {
       return sum;
     });
 
+    const std::vector<Vec3> normal = node_normals();
     std::vector<FacePoint> place(nodes);
     for (int n = 0; n < nodes; ++n) {
       const int c = component[theirs_.of[n]];
-      const ClosestPoint closest = query[c].closest(wanted[n]);
-      place[n].face = faces[c][closest.face];
+      ClosestPoint closest = query[c].closest(wanted[n]);
+      // The other side of a thin sheet may be nearer.
+      if (normal[n].dot(normal_of(faces[c][closest.face])) < 0) {
+        std::vector<std::array<int, 3>> corners;
+        std::vector<int> facing;
+        for (const int f : faces[c])
+          if (normal[n].dot(normal_of(f)) > 0 && is_near(f, wanted[n])) {
+            corners.push_back(unit_.faces[f]);
+            facing.push_back(f);
+          }
+        if (!facing.empty()) {
+          closest = SurfaceDistanceQuery(unit_.points, corners).closest(wanted[n]);
+          place[n].face = facing[closest.face];
+        }
+      }
+      if (place[n].face < 0) place[n].face = faces[c][closest.face];
       for (int i = 0; i < 3; ++i) place[n].at += closest.weights[i] * unit_.points[unit_.faces[place[n].face][i]];
     }
     // Those of the boundary first: they have less choice; then those that are vertices already, or nearly so.
@@ -211,7 +262,7 @@ class LayoutTracer {
   std::vector<Vec3> guide_of(int k) const {
     if (outline_.sides.empty()) return {};
     const QuadComplex::Edge& e = complex_.edge(k);
-    const std::vector<Vec3>& line = outline_.sides[e.left.patch][e.left.side];
+    const std::vector<Vec3> line = line_of(e);
     std::vector<Vec3> guide;
     const int count = std::min(static_cast<int>(line.size()), kGuidePoints);
     for (int i = 0; i < count; ++i) guide.push_back(frame_.to_unit(line[count > 1 ? i * (line.size() - 1) / (count - 1) : 0]));
@@ -221,6 +272,20 @@ class LayoutTracer {
   std::optional<CurveWay> find(int k, CurveSearch::Barriers barriers, bool guided) {
     const QuadComplex::Edge& e = complex_.edge(k);
     return search_(vertex_[e.from], vertex_[e.to], sector(e.from, {k, true}), sector(e.to, {k, false}), guided ? guide_of(k) : std::vector<Vec3>(), barriers);
+  }
+
+  // Curves that are edges opposite to the ends of edge k.
+  std::set<int> walls(int k) const {
+    const EditMesh& mesh = curves_.mesh();
+    std::set<int> out;
+    for (const int v : {vertex_[complex_.edge(k).from], vertex_[complex_.edge(k).to]}) {
+      int h = mesh.out[v];
+      do {
+        if (const int c = curves_.along(mesh.edge[EditMesh::next(h)]); c >= 0) out.insert(c);
+        h = mesh.ccw(h);
+      } while (h >= 0 && h != mesh.out[v]);
+    }
+    return out;
   }
 
   // Shortest ones first. One that finds no way takes the place of those that bar it, which are traced anew.
@@ -240,16 +305,23 @@ class LayoutTracer {
       pending.pop_front();
       std::optional<CurveWay> way = find(k, CurveSearch::Barriers::Respect, true);
       if (!way) {
-        way = find(k, CurveSearch::Barriers::Cross, true);
-        if (!way) return fail("there is no way for " + name(complex_.edge(k)));
-        for (const int c : way->crossed) {
+        const auto displace = [&](int c) {
           const int other = curves_.curve(c).stroke;
-          if (++replaced[other] > kMostReplacements)
-            return fail("there is no way for " + name(complex_.edge(k)) + " that leaves one for " + name(complex_.edge(other)));
           curves_.remove(c);
           pending.push_back(other);
+          return ++replaced[other] <= kMostReplacements || fail("there is no way for " + name(complex_.edge(k)) + " that leaves one for " + name(complex_.edge(other)));
+        };
+        // Where curves end side by side, those that bar the way come to light one after another.
+        for (int tries = 0; !way && tries < kMostReplacements; ++tries) {
+          way = find(k, CurveSearch::Barriers::Cross, true);
+          if (way && way->crossed.empty()) break;
+          // A curve that is an edge cannot be crossed everywhere. Once another one crosses its edge it will find itself another way.
+          const std::set<int> barring = way ? way->crossed : walls(k);
+          for (const int c : barring)
+            if (!displace(c)) return false;
+          if (barring.empty()) break;
+          way = find(k, CurveSearch::Barriers::Respect, true);
         }
-        way = find(k, CurveSearch::Barriers::Respect, true);
         if (!way) return fail("there is no way for " + name(complex_.edge(k)));
       }
       if (!add(k, *way)) return fail("nothing is left of " + name(complex_.edge(k)) + ": the surface is too coarse there");

@@ -220,6 +220,7 @@ const char* name_of(LayoutProblem::Kind kind) {
     case LayoutProblem::Kind::NotADisk: return "not_a_disk";
     case LayoutProblem::Kind::TooFewSides: return "too_few_sides";
     case LayoutProblem::Kind::OddSides: return "odd_sides";
+    case LayoutProblem::Kind::ManySides: return "many_sides";
     case LayoutProblem::Kind::TouchesItself: return "touches_itself";
   }
   return "";

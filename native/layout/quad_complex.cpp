@@ -64,7 +64,7 @@ QuadComplex::QuadComplex(const LayoutOutline& outline) : outline_(outline), neig
       const PatchSide other = neighbours_[q][i];
       if (other.patch < 0 || edge_at_[q][i] >= 0) continue;
       edge_at_[q][i] = edge_at_[other.patch][other.side] = edges();
-      edges_.push_back({node(q, i), node(q, i + 1), {q, i}});
+      edges_.push_back({node(q, i), node(q, i + 1), {q, i}, neighbours_[q][i]});
     }
   order_nodes();
 }

@@ -21,7 +21,7 @@ class QuadComplex {
   // From node to node as the side of the quad on its left runs.
   struct Edge {
     int from = -1, to = -1;
-    PatchSide left;
+    PatchSide left, right;
   };
   struct EdgeEnd {
     int edge = -1;

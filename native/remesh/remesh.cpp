@@ -11,12 +11,15 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "hierarchy/stretch.h"
 #include "layout/base_map.h"
 #include "parameterization/patch_extraction.h"
 #include "remesh/adaptive_refinement.h"
 #include "remesh/layout_hierarchy.h"
+#include "remesh/plan.h"
 #include "remesh/quality.h"
 #include "remesh/surface_fit.h"
 #include "remesh/working_surface.h"
@@ -84,10 +87,11 @@ class Remesher {
 
   RemeshResult run() {
     check_options();
+    if (!options_.plan.empty()) plan_ = plan_from_json(options_.plan);
     read_surface();
-    build_base();
+    plan_ ? build_planned_base() : build_base();
     build_levels();
-    try_another_base();
+    if (!plan_) try_another_base();
     finish();
     return std::move(result_);
   }
@@ -259,10 +263,10 @@ class Remesher {
   }
 
   void try_base(int attempt) {
-    progress_.stage("base domain");
-    watch_.start("base");
-    working_ = make_working_surface(result_.repaired, placement_, static_cast<std::int64_t>(std::min(30.0 * budget_.base_size, 2e6)));
-    BaseDomainOptions base_options;
+    Plan::Origin origin;
+    origin.surface = fingerprint(result_.repaired);
+    origin.faces = static_cast<std::int64_t>(std::min(30.0 * budget_.base_size, 2e6));
+    BaseDomainOptions& base_options = origin.base;
     base_options.size = budget_.base_size;
     base_options.boundary_side = budget_.boundary_side;
     if (options_.base == BaseSize::Minimal) {
@@ -274,10 +278,24 @@ class Remesher {
     base_options.seed = options_.seed + 1000003ull * (attempt + first_attempt_);
     // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
     if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= 4;
-    const BaseDomain base(working_.mesh, base_options, progress_.part(0.05, 0.15));
+    const BaseDomain base = make_base(origin);
+    BaseMap map = map_to_base(working_.mesh, base, search_options(base, attempt), progress_.part(0.15, 0.5));
+    origin.level = map.script.levels.front();
+    install(std::move(map), origin);
+  }
+
+  BaseDomain make_base(const Plan::Origin& origin) {
+    progress_.stage("base domain");
+    watch_.start("base");
+    working_ = make_working_surface(result_.repaired, placement_, origin.faces);
+    BaseDomain base(working_.mesh, origin.base, progress_.part(0.05, 0.15));
     progress_.stage("map");
     watch_.start("map");
-    BaseMap map = map_to_base(working_.mesh, base, search_options(base, attempt), progress_.part(0.15, 0.5));
+    return base;
+  }
+
+  // Makes the hierarchy of a map.
+  void install(BaseMap map, const std::optional<Plan::Origin>& origin) {
     watch_.start("extract");
     const PatchedSurface& first = map.levels.front().layout;
     report_["base"] = {{"quads", first.patch_count()}, {"vertices", first.node_count}};
@@ -302,7 +320,104 @@ class Remesher {
       for (const PatchSide& s : n) finest_.boundary_sides += s.patch < 0;
     result_.hierarchy = std::move(made.mesh);
     finest_.irregular = irregular_names(result_.hierarchy.level_mesh(finest_.level));
+    Plan plan;
+    plan.base = outline_of(first);
+    plan.origin = origin;
+    plan.levels.assign(map.script.levels.begin() + 1, map.script.levels.end());
+    for_outlines(plan.levels, [&](const Vec3& p) { return placement_.from_unit(p); });
+    result_.plan = to_json(plan);
     watch_.stop();
+  }
+
+  template <class Move>
+  static void move_outline(LayoutOutline& outline, const Move& move) {
+    for (Vec3& p : outline.nodes) p = move(p);
+    for (auto& sides : outline.sides)
+      for (auto& side : sides)
+        for (Vec3& p : side) p = move(p);
+  }
+  template <class Move>
+  static void for_outlines(std::vector<LayoutScript::Level>& levels, const Move& move) {
+    for (LayoutScript::Level& level : levels)
+      for (LayoutScript::EvenLayout& even : level.even) move_outline(even.outline, move);
+  }
+
+  // Where the base domain's nodes and sides lie, in the input's space.
+  LayoutOutline outline_of(const PatchedSurface& base) const {
+    constexpr int parts = 4;
+    LayoutOutline outline;
+    outline.quads = base.nodes;
+    outline.neighbours = base.neighbours;
+    outline.nodes.resize(base.node_count);
+    outline.sides.resize(base.patch_count());
+    constexpr std::array<std::array<double, 2>, 4> corner{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    for (int q = 0; q < base.patch_count(); ++q)
+      for (int i = 0; i < 4; ++i) {
+        const auto &from = corner[i], &to = corner[(i + 1) % 4];
+        const auto at = [&](double t) { return placement_.from_unit(result_.hierarchy.sample({q, (1 - t) * from[0] + t * to[0], (1 - t) * from[1] + t * to[1]}).position); };
+        outline.nodes[base.nodes[q][i]] = at(0);
+        const PatchSide& other = base.neighbours[q][i];
+        // Each line once.
+        if (other.patch >= 0 && std::pair(other.patch, other.side) < std::pair(q, i)) continue;
+        for (int k = 0; k <= parts; ++k) outline.sides[q][i].push_back(at(static_cast<double>(k) / parts));
+      }
+    return outline;
+  }
+
+  // The base and the operations of a plan: made again as they were on the surface that the plan was made on, or laid out on this one.
+  void build_planned_base() {
+    budget_ = plan_budget();
+    if (!make_again()) lay_out();
+    if (options_.refinement == Refinement::Uniform && options_.levels < 0) {
+      budget_.levels = finest_.level;
+      while (budget_.levels < 12 && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
+    }
+    const std::int64_t needed = vertices_at(std::max(finest_.level, budget_.levels));
+    if (options_.vertices > 0 && options_.refinement == Refinement::Uniform && needed > options_.vertices)
+      throw Error(ErrorCode::InvalidInput, "the plan needs at least " + std::to_string(needed) + " vertices, more than the " + std::to_string(options_.vertices) + " allowed");
+  }
+
+  bool make_again() {
+    if (!plan_->origin || plan_->origin->surface != fingerprint(result_.repaired)) return false;
+    LayoutScript script{{plan_->origin->level}};
+    script.levels.insert(script.levels.end(), plan_->levels.begin(), plan_->levels.end());
+    try {
+      const BaseDomain base = make_base(*plan_->origin);
+      install(map_to_base(working_.mesh, base, script, progress_.part(0.15, 0.5)), plan_->origin);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+      return false;
+    }
+    // A base that was changed by hand is another one.
+    const LayoutOutline made = plan_from_json(result_.plan).base;
+    if (made.nodes != plan_->base.nodes || made.quads != plan_->base.quads) return false;
+    result_.plan = options_.plan;
+    return true;
+  }
+
+  void lay_out() {
+    progress_.stage("base domain");
+    watch_.start("base");
+    working_ = make_working_surface(result_.repaired, placement_, 30 * static_cast<std::int64_t>(plan_->base.quads.size()));
+    LayoutOutline outline = plan_->base;
+    const auto to_unit = [&](const Vec3& p) { return placement_.to_unit(p); };
+    move_outline(outline, to_unit);
+    const TransferredLayout laid = transfer_layout(working_.mesh, outline, progress_.part(0.05, 0.2));
+    if (!laid.failure.empty()) throw Error(ErrorCode::InvalidInput, "the plan's base cannot be laid out on this surface: " + laid.failure);
+    progress_.stage("map");
+    watch_.start("map");
+    LayoutScript script{{LayoutScript::Level()}};
+    script.levels.insert(script.levels.end(), plan_->levels.begin(), plan_->levels.end());
+    for_outlines(script.levels, to_unit);
+    for (LayoutScript::Level& level : script.levels)
+      for (LayoutScript::EvenLayout& even : level.even) even.quads = 0;
+    try {
+      install(map_to_base(working_.mesh, to_patched_surface(laid.layout), script, progress_.part(0.2, 0.5)), std::nullopt);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+      throw Error(ErrorCode::Unsupported, std::string("no map to the plan's quads is found on this surface: ") + e.what());
+    }
+    result_.plan = options_.plan;
   }
 
   static std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
@@ -408,8 +523,9 @@ class Remesher {
     Json base, levels;
     SurfaceDistance distance;
     Finest finest;
+    std::string plan;
   };
-  Made set_aside() { return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_, finest_}; }
+  Made set_aside() { return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_, finest_, result_.plan}; }
   void put_back(Made made) {
     result_.hierarchy = std::move(made.hierarchy);
     result_.final_mesh = std::move(made.mesh);
@@ -417,6 +533,7 @@ class Remesher {
     report_["levels"] = std::move(made.levels);
     final_distance_ = made.distance;
     finest_ = std::move(made.finest);
+    result_.plan = std::move(made.plan);
   }
 
   // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.
@@ -441,7 +558,7 @@ class Remesher {
     Attempt enough, too_few;  // the fewest vertices that met the bound and the most that did not; 0 vertices: none yet
     const Attempt first = climb();
     (first.l2 <= options_.error ? enough : too_few) = first;
-    const bool any_base = options_.base == BaseSize::Auto, one_level = options_.levels >= 0;
+    const bool any_base = options_.base == BaseSize::Auto && !plan_, one_level = options_.levels >= 0;
     const bool may_grow = options_.vertices == 0 && one_level;
     for (int step = 0; step < 4 && any_base && (enough.vertices > 0 || may_grow); ++step) {
       aim_ = next_aim(enough, too_few);
@@ -653,6 +770,7 @@ class Remesher {
   SurfaceDistance final_distance_;
   Budget budget_;
   Finest finest_;
+  std::optional<Plan> plan_;  // that was given
   // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
   std::int64_t aim_ = 0;
   int levels_less_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <nlohmann/json.hpp>
 
 #include "base/context.h"
@@ -27,6 +28,7 @@ struct RemeshOptions {
   double drop_components = 0;             // see RepairOptions
   bool strict = false;                    // refuse input that needs repair
   std::uint64_t seed = 1;
+  std::string plan;                       // JSON text, see Plan: what decides base and operations instead of a search; empty: none
   int threads = 0;                        // 0 = all cores; never changes the result
 };
 
@@ -34,6 +36,7 @@ struct RemeshResult {
   HybridMesh hierarchy;                   // with its patch maps
   QuadMesh final_mesh;
   TriangleSurface repaired;               // what the maps' source faces refer to
+  std::string plan;                       // JSON text: what was decided. With it, and the same other options, the same surface gives the same result
   nlohmann::ordered_json report;          // `NAME.report.json` without file name, settings and memory
 };
 

@@ -48,7 +48,7 @@ class LayoutError(InvalidInput):
 
 SETTINGS = {
     "vertices", "error", "levels", "refinement", "faces", "base", "stretch_threshold", "semi_regular", "drop_components", "strict", "seed",
-    "threads",
+    "threads", "plan",
 }  # fmt: skip
 
 
@@ -172,6 +172,7 @@ class Result:
         levels = settings["levels"] + 1 if settings["levels"] >= 0 else 3
         self.hierarchy = Hierarchy(points.min(0), points.max(0), levels)
         self._mesh = mesh
+        self.plan = settings.get("plan") or json.dumps({"format": "hybrid-mesh plan", "version": 1, "base": {}})
         final = self.final_mesh()
         count = len(final["offsets"]) - 1
         self.report = json.dumps({

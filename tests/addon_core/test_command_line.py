@@ -23,7 +23,7 @@ def report(command_line, name, folder="out"):
 def test_remesh_writes_hierarchy_report_and_summary(command_line):
     run = command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--vertices", 100)
     assert run.returncode == 0 and run.err == "" and "box.obj" in run.out
-    assert command_line.outputs() == ["box.hmesh", "box.report.json", "summary.csv"]
+    assert command_line.outputs() == ["box.hmesh", "box.plan.json", "box.report.json", "summary.csv"]
     made = report(command_line, "box")
     assert made["settings"]["vertices"] == 100 and made["version"] and made["peak_memory_bytes"] > 0 and made["input"]["file"] == "box.obj"
     assert list(made["seconds"])[0] == "read" and list(made["seconds"])[-1] == "total"
@@ -34,8 +34,21 @@ def test_exports(command_line):
     run = command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--export", "ply,obj", "--export-repaired")
     assert run.returncode == 0
     assert command_line.outputs() == [
-        "box.hmesh", "box.obj", "box.ply", "box.repaired.obj", "box.repaired.ply", "box.report.json", "summary.csv",
+        "box.hmesh", "box.obj", "box.plan.json", "box.ply", "box.repaired.obj", "box.repaired.ply", "box.report.json", "summary.csv",
     ]  # fmt: skip
+
+
+def test_a_plan_is_passed_on_and_known_to_a_resumed_run(command_line):
+    first = command_line.run("remesh", command_line.box("box.obj"), "--output", "out")
+    assert first.returncode == 0
+    plan = json.loads((command_line.folder / "out" / "box.plan.json").read_text(encoding="utf-8"))
+    plan["base"] = {"nodes": []}
+    (command_line.folder / "mine.json").write_text(json.dumps(plan), encoding="utf-8")
+    planned = ("remesh", "box.obj", "--output", "out", "--plan", "mine.json", "--resume")
+    assert "skipped" not in command_line.run(*planned).out
+    assert json.loads((command_line.folder / "out" / "box.plan.json").read_text(encoding="utf-8")) == plan
+    assert "skipped" in command_line.run(*planned).out
+    assert "plan" not in report(command_line, "box")["settings"]
 
 
 def test_one_bad_input_leaves_the_others_done(command_line):
@@ -71,7 +84,9 @@ def test_one_bad_input_leaves_the_others_done(command_line):
         (("encode", "a", "b"), "later"),
         (("decode", "a"), "later"),
         (("bench",), "later"),
-        (("remesh", "box.obj", "--output", "out", "--plan", "p.json"), "later"),
+        (("remesh", "box.obj", "--output", "out", "--plan", "missing.json"), "missing.json"),
+        (("remesh", "box.obj", "--output", "out", "--plan", "box.obj"), "JSON"),
+        (("remesh", "box.obj", "--output", "out", "--symmetry", "x"), "later"),
         (("remesh", "box.obj", "--output", "out", "--vertices", "0"), "--vertices"),
         (("remesh", "box.obj", "--output", "out", "--vertices", "many"), "--vertices"),
         (("remesh", "box.obj", "--output", "out", "--vertices", "1e99"), "--vertices"),

@@ -5,7 +5,7 @@ from hybrid_mesh.core.inputs import Input, InputsError, Outputs
 
 
 def test_the_report_is_what_appears_last():
-    assert Outputs(("ply", "obj"), True, True).suffixes() == [".hmesh", ".ply", ".obj", ".repaired.ply", ".repaired.obj", ".blend", ".report.json"]
+    assert Outputs(("ply", "obj"), True, True).suffixes() == [".hmesh", ".plan.json", ".ply", ".obj", ".repaired.ply", ".repaired.obj", ".blend", ".report.json"]
 
 
 @pytest.mark.parametrize("name, safe", [("Cube", "Cube"), ("a/b\\c", "a_b_c"), ("..", "_."), (".x", "_x"), ("", "_"), ("Größe 猫", "Größe 猫")])

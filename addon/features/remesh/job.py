@@ -70,7 +70,7 @@ def _build(context, obj, result, source, settings):
     report = json.loads(result.report)
     report["version"] = VERSION
     report["settings"] = settings.reported()
-    hierarchy_properties.describe(built, obj, report, getattr(result, "plan", ""))
+    hierarchy_properties.describe(built, obj, report, result.plan)
     levels.show_preview_only(built)
     return built
 

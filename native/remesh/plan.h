@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "layout/layout_search.h"
+#include "layout/layout_transfer.h"
+#include "remesh/working_surface.h"
+
+namespace hybrid_mesh {
+
+// What decides the quads of a remesh: where the base domain's quads lie in space, and the irregular operations by their place in the hierarchy. Nothing in it refers to the input's
+// numbering, so that it can be carried out on any surface of about the same shape.
+struct Plan {
+  // How the base came about on the surface that the plan was made on. On that surface it is made in the same way again; on others the outline is laid out.
+  struct Origin {
+    std::string surface;  // its fingerprint()
+    std::int64_t faces = 0;  // see make_working_surface()
+    BaseDomainOptions base;
+    LayoutScript::Level level;  // the base level's edits
+  };
+  LayoutOutline base;                       // in the input's space
+  std::optional<Origin> origin;
+  std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
+};
+
+// The layout of a base domain and of its levels before and after a plan's operations, in which quads have addresses: the number of a root quad (those of the base domain first, then
+// every operation's in order), then for each level the number of the child, as in "12.0.3".
+class PlanLayout {
+ public:
+  explicit PlanLayout(const PatchedSurface& base);
+
+  const PatchedSurface& layout() const { return layout_; }
+  const std::vector<std::string>& addresses() const { return address_; }  // per quad
+  int find(const std::string& address) const;                             // -1: none
+  void quadrisect();
+  void apply(std::vector<LayoutEdit> edits);  // of one round: named by the layout before them. Throws Error{Internal} where there are no such quads
+
+ private:
+  PatchedSurface layout_;  // nodes and neighbours
+  std::vector<std::string> address_;
+  int roots_ = 0;
+};
+
+// A number that tells surfaces apart: of their points' coordinates and their faces.
+std::string fingerprint(const TriangleSurface& surface);
+
+// JSON text. Throws Error{InvalidInput}, with the place in the text, for what is no plan.
+std::string to_json(const Plan& plan);
+Plan plan_from_json(const std::string& text);
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "codec/container.h"
+#include "generated_surfaces.h"
+#include "remesh/remesh.h"
+#include "surface/topology_summary.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using testing::ball;
+using testing::torus;
+using Json = nlohmann::ordered_json;
+
+PolygonSoup spiked_ball(int n) {
+  PolygonSoup soup = ball(n);
+  for (Vec3& p : soup.points) {
+    const double r = p.norm(), z = p.z() / r;
+    if (z > 0.9) p.z() += 12 * (z - 0.9) * r;
+  }
+  return soup;
+}
+
+RemeshResult run(const PolygonSoup& soup, RemeshOptions options, const std::string& plan = "") {
+  options.plan = plan;
+  Context context;
+  return remesh(soup, options, context);
+}
+
+RemeshOptions options_of(BaseSize base, Refinement refinement) {
+  RemeshOptions options;
+  options.vertices = 4000;
+  options.base = base;
+  options.refinement = refinement;
+  return options;
+}
+
+class PlanKinds : public ::testing::TestWithParam<std::tuple<BaseSize, Refinement>> {
+ protected:
+  RemeshOptions options() const { return options_of(std::get<0>(GetParam()), std::get<1>(GetParam())); }
+};
+INSTANTIATE_TEST_SUITE_P(Remeshes, PlanKinds,
+                         ::testing::Combine(::testing::Values(BaseSize::Auto, BaseSize::Minimal), ::testing::Values(Refinement::Uniform, Refinement::Adaptive)));
+
+TEST_P(PlanKinds, RepeatARemeshByteForByte) {
+  for (const PolygonSoup& soup : {spiked_ball(30), ball(14, 0.5), torus(40, 20)}) {
+    const RemeshResult first = run(soup, options());
+    RemeshOptions other = options();
+    // What is decided by the plan does not depend on these.
+    other.seed = 77;
+    other.base = BaseSize::Auto;
+    const RemeshResult again = run(soup, other, first.plan);
+    EXPECT_EQ(encode_hierarchy(first.hierarchy, "{}"), encode_hierarchy(again.hierarchy, "{}"));
+    EXPECT_EQ(first.plan, again.plan);
+    EXPECT_EQ(to_json(plan_from_json(first.plan)), first.plan);
+  }
+}
+
+TEST_P(PlanKinds, LayTheSameQuadsOnAnotherTriangulation) {
+  const RemeshResult coarse = run(spiked_ball(24), options());
+  const PolygonSoup fine = spiked_ball(37);
+  const RemeshResult laid = run(fine, options(), coarse.plan), own = run(fine, options());
+  EXPECT_TRUE(find_defects(laid.hierarchy).empty());
+  EXPECT_EQ(laid.hierarchy.base_count(), coarse.hierarchy.base_count());
+  EXPECT_EQ(laid.hierarchy.operation_count(), coarse.hierarchy.operation_count());
+  for (int i = 0; i < laid.hierarchy.operation_count(); ++i) {
+    EXPECT_EQ(laid.hierarchy.operation(i).repatch.level, coarse.hierarchy.operation(i).repatch.level);
+    EXPECT_EQ(laid.hierarchy.operation(i).roots.size(), coarse.hierarchy.operation(i).roots.size());
+  }
+  const TopologySummary t = summarize_topology(to_soup(laid.final_mesh));
+  EXPECT_EQ(t.euler, 2);
+  EXPECT_EQ(t.nonmanifold_edges + t.nonmanifold_vertices + t.misoriented_edges, 0);
+  EXPECT_LE(t.vertices, 4000);
+  EXPECT_LE(laid.report["final"]["l2"].get<double>(), 1.3 * own.report["final"]["l2"].get<double>());
+}
+
+TEST(Plan, ABaseChangedByHandIsAnotherOne) {
+  const PolygonSoup soup = ball(24);
+  const RemeshOptions options = options_of(BaseSize::Auto, Refinement::Uniform);
+  const RemeshResult first = run(soup, options);
+  Json plan = Json::parse(first.plan);
+  plan["base"].erase("curves");
+  for (Json& c : plan["base"]["nodes"][0]) c = 0.999 * c.get<double>() + 1e-3;
+  const RemeshResult moved = run(soup, options, plan.dump());
+  EXPECT_NE(encode_hierarchy(first.hierarchy, "{}"), encode_hierarchy(moved.hierarchy, "{}"));
+  EXPECT_EQ(moved.hierarchy.base_count(), first.hierarchy.base_count());
+}
+
+// A plan as a person might write it: a cube for a ball, and a tower on one of its quads' children.
+TEST(Plan, ByHand) {
+  Json plan = {{"format", "hybrid-mesh plan"}, {"version", 1}};
+  Json nodes = Json::array();
+  for (const double z : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0})
+      for (const double x : {-1.0, 1.0}) nodes.push_back({x, y, z});
+  plan["base"]["nodes"] = nodes;
+  plan["base"]["quads"] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  plan["levels"] = Json::array({{{"level", 2}, {"operations", Json::array({{{"kind", "add_cubes"}, {"quads", {"1.0.2"}}, {"height", 2}}})}}});
+  RemeshOptions options;
+  options.levels = 4;
+  const RemeshResult made = run(ball(24), options, plan.dump());
+  EXPECT_EQ(made.hierarchy.base_count(), 6);
+  ASSERT_EQ(made.hierarchy.operation_count(), 1);
+  EXPECT_EQ(made.hierarchy.operation(0).repatch.level, 2);
+  EXPECT_EQ(made.hierarchy.operation(0).roots.size(), 9u);
+  EXPECT_TRUE(find_defects(made.hierarchy).empty());
+  EXPECT_EQ(summarize_topology(to_soup(made.final_mesh)).euler, 2);
+}
+
+TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
+  const RemeshResult made = run(spiked_ball(24), options_of(BaseSize::Minimal, Refinement::Uniform));
+  const Json good = Json::parse(made.plan);
+  const auto refused = [&](const Json& plan) -> std::string {
+    try {
+      plan_from_json(plan.dump());
+    } catch (const Error& e) {
+      EXPECT_TRUE(e.code() == ErrorCode::InvalidInput || e.code() == ErrorCode::Unsupported) << e.what();
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused(good), "");
+  EXPECT_THROW(plan_from_json("{"), Error);
+  EXPECT_THROW(plan_from_json("[]"), Error);
+  std::size_t at = 0;
+  while (at < good["levels"].size() && good["levels"][at]["operations"].empty()) ++at;
+  ASSERT_LT(at, good["levels"].size());
+  const std::string operation = "levels[" + std::to_string(at) + "].operations[0]";
+  const std::vector<std::pair<std::string, std::function<void(Json&)>>> mistakes = {
+      {"format", [](Json& p) { p["format"] = "a plan"; }},
+      {"version", [](Json& p) { p["version"] = 0; }},
+      {"version 9", [](Json& p) { p["version"] = 9; }},
+      {"no \"base\"", [](Json& p) { p.erase("base"); }},
+      {"colour", [](Json& p) { p["base"]["colour"] = 1; }},
+      {"base.nodes[1]", [](Json& p) { p["base"]["nodes"][1] = {1, 2}; }},
+      {"base.nodes[1][2]", [](Json& p) { p["base"]["nodes"][1][2] = "far"; }},
+      {"base.quads[0][3]", [](Json& p) { p["base"]["quads"][0][3] = 1000; }},
+      {"base.quads[0][0]", [](Json& p) { p["base"]["quads"][0][0] = 0.5; }},
+      {"base.quads[0][0]", [](Json& p) { p["base"]["quads"][0][0] = 18446744073709551615u; }},
+      {"base.neighbours", [](Json& p) { p["base"]["neighbours"].erase(0); }},
+      {"base.neighbours[0][0]", [](Json& p) { p["base"]["neighbours"][0][0] = {0, 3}; }},
+      {operation + ".kind", [&](Json& p) { p["levels"][at]["operations"][0]["kind"] = "magic"; }},
+      {operation + ".quads[0]", [&](Json& p) { p["levels"][at]["operations"][0]["quads"][0] = "0.9"; }},
+      {operation, [&](Json& p) { p["levels"][at]["operations"][0]["quads"].erase(0); }},
+      {operation + ".new_quads", [&](Json& p) { p["levels"][at]["operations"][0]["new_quads"].erase(0); }},
+      {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 99; }},
+  };
+  for (const auto& [place, spoil] : mistakes) {
+    Json bad = good;
+    spoil(bad);
+    EXPECT_NE(refused(bad).find(place), std::string::npos) << place << ": " << refused(bad);
+  }
+}
+
+TEST(Plan, ASurfaceOfOtherTopologyIsRefused) {
+  const RemeshOptions options = options_of(BaseSize::Auto, Refinement::Uniform);
+  const std::string plan = run(ball(20), options).plan;
+  try {
+    run(torus(40, 20), options, plan);
+    FAIL() << "a ball's base was laid out on a torus";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+    EXPECT_NE(std::string(e.what()).find("Euler number"), std::string::npos) << e.what();
+  }
+  RemeshOptions few = options;
+  few.vertices = 30;
+  EXPECT_THROW(run(ball(20), few, plan), Error);
+}
+
+}  // namespace
+}  // namespace hybrid_mesh
