@@ -38,7 +38,7 @@ def summary(folder):
 
 def test_mesh_files(files, capfd):
     assert run("remesh", files / "mesh.ply", "--output", files / "out", "--vertices", 1000, "--export", "ply,obj") == 0
-    assert sorted(os.listdir(files / "out")) == ["mesh.hmesh", "mesh.obj", "mesh.ply", "mesh.report.json", "summary.csv"]
+    assert sorted(os.listdir(files / "out")) == ["mesh.hmesh", "mesh.obj", "mesh.plan.json", "mesh.ply", "mesh.report.json", "summary.csv"]
     assert run("compare", files / "mesh.ply", files / "out" / "mesh.ply") == 0
     assert run("info", "--check", files / "out" / "mesh.hmesh") == 0
     assert capfd.readouterr().err == ""
