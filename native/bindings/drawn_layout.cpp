@@ -8,6 +8,7 @@
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
 #include "bindings/job.h"
+#include "bindings/layout_problems.h"
 #include "remesh/plan.h"
 #include "surface/repair.h"
 
@@ -74,7 +75,7 @@ py::array_t<double> positions(const PatchLayout& layout, const std::vector<int>&
 
 py::dict to_dict(const DrawnLayout& drawn) {
   const PatchLayout& layout = drawn.layout;
-  py::list curves, faces, problems;
+  py::list curves, faces;
   for (const PatchLayout::Curve& c : layout.curves) {
     py::dict curve;
     curve["nodes"] = py::make_tuple(c.from, c.to);
@@ -90,20 +91,11 @@ py::dict to_dict(const DrawnLayout& drawn) {
       for (const PatchLayout::Side& s : cycle) sides.append(py::make_tuple(s.curve, s.forward));
     faces.append(sides);
   }
-  for (const LayoutProblem& p : drawn.problems) {
-    py::dict problem;
-    problem["kind"] = name_of(p.kind);
-    problem["message"] = p.message;
-    problem["points"] = rows_to_array<double>(p.where);
-    problem["stroke"] = p.stroke;
-    problem["face"] = p.face;
-    problems.append(problem);
-  }
   py::dict result;
   result["nodes"] = positions(layout, layout.nodes);
   result["curves"] = curves;
   result["faces"] = faces;
-  result["problems"] = problems;
+  result["problems"] = to_list(drawn.problems);
   return result;
 }
 
@@ -118,20 +110,6 @@ DrawnLayout drawn_layout(const py::object& points, const py::object& faces, cons
     const Progress progress(context);
     return make_layout(repair(soup, RepairOptions(), report, progress.part(0, 0.2)), drawn, options, progress.part(0.2, 1));
   });
-}
-
-// Faces that a base domain cannot have.
-void find_faces_without_quads(DrawnLayout& drawn) {
-  const PatchLayout& layout = drawn.layout;
-  for (std::size_t f = 0; f < layout.faces.size(); ++f) {
-    const int sides = layout.faces[f].side_count();
-    if (sides == 4) continue;
-    LayoutProblem problem{LayoutProblem::Kind::ManySides, "a face has " + std::to_string(sides) + " sides: curves across it must divide it into faces of four", {}};
-    problem.face = static_cast<int>(f);
-    for (const PatchLayout::Side& s : layout.faces[f].cycles.front())
-      for (const int v : layout.points(s)) problem.where.push_back(layout.mesh.points[v]);
-    drawn.problems.push_back(std::move(problem));
-  }
 }
 
 LayoutOutline outline_of(const PatchLayout& layout) {
@@ -165,7 +143,7 @@ py::dict make_layout_from_arrays(const py::object& points, const py::object& fac
 
 py::dict layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
   DrawnLayout drawn = drawn_layout(points, faces, strokes, snap);
-  if (drawn.problems.empty()) find_faces_without_quads(drawn);
+  require_quads(drawn);
   py::dict result = to_dict(drawn);
   Plan plan;
   if (drawn.problems.empty()) plan.base = outline_of(drawn.layout);
@@ -174,6 +152,20 @@ py::dict layout_plan(const py::object& points, const py::object& faces, const py
 }
 
 }  // namespace
+
+py::list to_list(const std::vector<LayoutProblem>& problems) {
+  py::list list;
+  for (const LayoutProblem& p : problems) {
+    py::dict problem;
+    problem["kind"] = name_of(p.kind);
+    problem["message"] = p.message;
+    problem["points"] = rows_to_array<double>(p.where);
+    problem["stroke"] = p.stroke;
+    problem["face"] = p.face;
+    list.append(problem);
+  }
+  return list;
+}
 
 void bind_drawn_layout(py::module_& module) {
   using py::arg;

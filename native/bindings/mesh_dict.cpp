@@ -115,15 +115,32 @@ void add_sources(const HybridMesh& hierarchy, const VertexSources& vertex_source
   }
 }
 
+void add_addresses(const HybridMesh& hierarchy, const std::vector<int>& plan_root, AnnotatedMesh& annotated) {
+  std::vector<int> number = plan_root;
+  if (number.empty()) {
+    number.assign(hierarchy.node_count(), -1);
+    int roots = 0;
+    for (const int root : hierarchy.roots()) number[root] = roots++;
+  }
+  for (std::size_t f = 0; f < annotated.mesh.face_count(); ++f) {
+    std::int32_t path = 0, digit = 1;
+    int node = annotated.mesh.node[f];
+    for (; !hierarchy.is_root(node); node = hierarchy.parent(node), digit *= 4) path += digit * (node - hierarchy.first_child(hierarchy.parent(node)));
+    annotated.root.push_back(number[node]);
+    annotated.path.push_back(path + digit);
+  }
+}
+
 }  // namespace
 
-AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, QuadMesh mesh) {
+AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, const std::vector<int>& plan_root, QuadMesh mesh) {
   AnnotatedMesh annotated;
   annotated.mesh = std::move(mesh);
   const LevelStretch stretch = level_stretch(hierarchy, annotated.mesh);
   annotated.stretch.assign(stretch.stretch.begin(), stretch.stretch.end());
   annotated.anisotropy.assign(stretch.anisotropy.begin(), stretch.anisotropy.end());
   for (const std::int32_t root : annotated.mesh.root) annotated.irregular.push_back(hierarchy.inserted_by(root) >= 0);
+  add_addresses(hierarchy, plan_root, annotated);
   add_uv(hierarchy, annotated);
   add_sources(hierarchy, vertex_sources, annotated);
   return annotated;
@@ -139,6 +156,8 @@ py::dict to_dict(const AnnotatedMesh& annotated) {
   result["stretch"] = to_array(annotated.stretch);
   result["anisotropy"] = to_array(annotated.anisotropy);
   result["patch"] = to_array(annotated.mesh.root);
+  result["root"] = to_array(annotated.root);
+  result["path"] = to_array(annotated.path);
   result["irregular"] = irregular;
   result["uv"] = rows_to_array<float>(annotated.uv);
   result["source_face"] = to_array(annotated.source_face);

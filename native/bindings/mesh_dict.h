@@ -17,13 +17,16 @@ struct AnnotatedMesh {
   QuadMesh mesh;
   std::vector<float> stretch;                        // #F, see LevelStretch
   std::vector<float> anisotropy;                     // #F
+  std::vector<std::int32_t> root;                    // #F: number of the root quad in a plan's addresses
+  std::vector<std::int32_t> path;                    // #F: 1, then the children from the root quad to the face's node as digits in base 4
   std::vector<bool> irregular;                       // #F: under a root quad that an irregular operation made
   std::vector<std::array<float, 2>> uv;              // #corners: patches as islands, side by side in a square grid
   std::vector<std::int32_t> source_face;             // #V: face of the repaired surface; -1 where the maps were dropped
   std::vector<std::array<float, 3>> source_weights;  // #V: barycentrics in it
 };
 
-AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, QuadMesh mesh);
+// `plan_root`: per node, as RemeshResult has it; empty: roots are numbered in their order.
+AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, const std::vector<int>& plan_root, QuadMesh mesh);
 pybind11::dict to_dict(const AnnotatedMesh& annotated);
 
 }  // namespace hybrid_mesh

@@ -110,7 +110,7 @@ Answer answer(const HybridMesh& hierarchy, Request request, const Progress& prog
     result.normals = std::move(limit.normals);
   }
   progress(0.7);
-  result.mesh = annotate(subdivided.hierarchy, VertexSources(subdivided.hierarchy), std::move(subdivided.mesh));
+  result.mesh = annotate(subdivided.hierarchy, VertexSources(subdivided.hierarchy), {}, std::move(subdivided.mesh));
   progress(1);
   return result;
 }

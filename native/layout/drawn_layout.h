@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "base/context.h"
+#include "base/error.h"
 #include "layout/patch_layout.h"
 #include "surface/triangle_surface.h"
 
@@ -33,5 +35,15 @@ struct DrawnLayout {
 // stroke that meet alone are one curve; pieces of two strokes that end at one another meet at a node. Nothing is guessed: what is wrong is named, and the layout is made as far as it goes.
 // The result has no problems if every face is a disk with an even number of sides, at least four, that does not touch itself. Any scale and place. Throws Error{InvalidInput} for options out of range.
 DrawnLayout make_layout(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options, const Progress& progress);
+
+// Names the faces of a layout without problems that have more than four sides: where only quads will do they are problems, too.
+void require_quads(DrawnLayout& drawn);
+
+// Drawn curves that make no layout of quads.
+class LayoutError : public Error {
+ public:
+  explicit LayoutError(std::vector<LayoutProblem> of) : Error(ErrorCode::InvalidInput, "the curves make no layout of quads: " + of.front().message), problems(std::move(of)) {}
+  std::vector<LayoutProblem> problems;
+};
 
 }  // namespace hybrid_mesh

@@ -371,6 +371,45 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
   return levels;
 }
 
+Json regions_to_json(const Plan& plan) {
+  Json out = Json::array();
+  for (const Plan::Region& r : plan.regions) {
+    Json curves = Json::array();
+    for (const DrawnStroke& s : r.strokes) {
+      Json points = Json::array();
+      for (const Vec3& p : s.points) points.push_back(to_json(p));
+      curves.push_back({{"points", std::move(points)}, {"fit", s.fit == DrawnStroke::Fit::Tight ? "tight" : "drawn"}});
+    }
+    out.push_back({{"level", r.level}, {"quads", r.quads}, {"curves", std::move(curves)}, {"buffer_rings", r.buffer_rings}});
+  }
+  return out;
+}
+
+std::vector<Plan::Region> regions_from_json(const Entry& entry) {
+  std::vector<Plan::Region> regions;
+  for (const Entry& e : entry.list()) {
+    e.only({"level", "quads", "curves", "buffer_rings"});
+    Plan::Region r;
+    r.level = static_cast<int>(e.at("level").integer(1, kMostLevels));
+    for (const Entry& q : e.at("quads").list()) r.quads.push_back(q.text());
+    if (r.quads.empty()) e.refuse("has no quads");
+    for (const Entry& c : e.at("curves").list()) {
+      c.only({"points", "fit"});
+      DrawnStroke stroke;
+      for (const Entry& p : c.at("points").list()) stroke.points.push_back(p.point());
+      if (c.has("fit")) {
+        const std::string fit = c.at("fit").text();
+        if (fit != "tight" && fit != "drawn") c.at("fit").refuse("must be \"tight\" or \"drawn\"");
+        stroke.fit = fit == "tight" ? DrawnStroke::Fit::Tight : DrawnStroke::Fit::AsDrawn;
+      }
+      r.strokes.push_back(std::move(stroke));
+    }
+    if (e.has("buffer_rings")) r.buffer_rings = static_cast<int>(e.at("buffer_rings").integer(0, 100));
+    regions.push_back(std::move(r));
+  }
+  return regions;
+}
+
 }  // namespace
 
 PlanLayout::PlanLayout(const PatchedSurface& base) : roots_(base.patch_count()) {
@@ -430,14 +469,16 @@ std::string fingerprint(const TriangleSurface& surface) {
 std::string to_json(const Plan& plan) {
   Json base = base_to_json(plan);
   if (plan.origin) base["origin"] = origin_to_json(*plan.origin);
-  return Json{{"format", kFormat}, {"version", kVersion}, {"base", std::move(base)}, {"levels", levels_to_json(plan)}}.dump();
+  Json out{{"format", kFormat}, {"version", kVersion}, {"base", std::move(base)}, {"levels", levels_to_json(plan)}};
+  if (!plan.regions.empty()) out["operations"] = regions_to_json(plan);
+  return out.dump();
 }
 
 Plan plan_from_json(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "the plan is not JSON");
   const Entry top(json, Entry::kTop);
-  top.only({"format", "version", "base", "levels"});
+  top.only({"format", "version", "base", "levels", "operations"});
   if (top.at("format").text() != kFormat) top.at("format").refuse(std::string("must be \"") + kFormat + "\"");
   if (const std::int64_t version = top.at("version").integer(1, 1000000); version > kVersion)
     throw Error(ErrorCode::Unsupported, "the plan has version " + std::to_string(version) + "; this program reads versions up to " + std::to_string(kVersion));
@@ -453,6 +494,7 @@ Plan plan_from_json(const std::string& text) {
       throw Error(ErrorCode::InvalidInput, std::string("the plan's operations do not fit its base: ") + e.what());
     }
   }
+  if (top.has("operations")) plan.regions = regions_from_json(top.at("operations"));
   return plan;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "layout/layout_search.h"
+#include "layout/drawn_layout.h"
 #include "layout/layout_transfer.h"
 #include "remesh/working_surface.h"
 
@@ -21,9 +22,17 @@ struct Plan {
     BaseDomainOptions base;
     LayoutScript::Level level;  // the base level's edits
   };
+  // Quads of one level, laid out anew along drawn curves after all of that level's other operations; see DrawnRegion.
+  struct Region {
+    int level = 0;
+    std::vector<std::string> quads;    // addresses
+    std::vector<DrawnStroke> strokes;  // in the input's space
+    int buffer_rings = 1;
+  };
   LayoutOutline base;                       // in the input's space
   std::optional<Origin> origin;
   std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
+  std::vector<Region> regions;
 };
 
 // The layout of a base domain and of its levels before and after a plan's operations, in which quads have addresses: the number of a root quad (those of the base domain first, then

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "codec/container.h"
 #include "generated_surfaces.h"
 #include "remesh/remesh.h"
+#include "surface/closest_point.h"
 #include "surface/topology_summary.h"
 
 namespace hybrid_mesh {
@@ -92,8 +94,7 @@ TEST(Plan, ABaseChangedByHandIsAnotherOne) {
   EXPECT_EQ(moved.hierarchy.base_count(), first.hierarchy.base_count());
 }
 
-// A plan as a person might write it: a cube for a ball, and a tower on one of its quads' children.
-TEST(Plan, ByHand) {
+Json cube_plan() {
   Json plan = {{"format", "hybrid-mesh plan"}, {"version", 1}};
   Json nodes = Json::array();
   for (const double z : {-1.0, 1.0})
@@ -101,6 +102,12 @@ TEST(Plan, ByHand) {
       for (const double x : {-1.0, 1.0}) nodes.push_back({x, y, z});
   plan["base"]["nodes"] = nodes;
   plan["base"]["quads"] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  return plan;
+}
+
+// A plan as a person might write it: a cube for a ball, and a tower on one of its quads' children.
+TEST(Plan, ByHand) {
+  Json plan = cube_plan();
   plan["levels"] = Json::array({{{"level", 2}, {"operations", Json::array({{{"kind", "add_cubes"}, {"quads", {"1.0.2"}}, {"height", 2}}})}}});
   RemeshOptions options;
   options.levels = 4;
@@ -111,6 +118,127 @@ TEST(Plan, ByHand) {
   EXPECT_EQ(made.hierarchy.operation(0).roots.size(), 9u);
   EXPECT_TRUE(find_defects(made.hierarchy).empty());
   EXPECT_EQ(summarize_topology(to_soup(made.final_mesh)).euler, 2);
+}
+
+int node_at(const HybridMesh& mesh, int root, const std::vector<int>& children) {
+  int node = root;
+  for (const int c : children) node = mesh.first_child(node) + c;
+  return node;
+}
+
+// Where the vertices of a level lie, by node and corner.
+std::map<std::pair<int, int>, Vec3> corners_of(const HybridMesh& mesh, int level) {
+  std::map<VertexId, Vec3> at;
+  const QuadMesh m = mesh.level_mesh(level);
+  for (std::size_t v = 0; v < m.vertex.size(); ++v) at[m.vertex[v]] = mesh.sample(m.vertex[v]).position;
+  std::map<std::pair<int, int>, Vec3> out;
+  for (const int node : m.node)
+    for (int i = 0; i < 4; ++i) out[{node, i}] = at.at(mesh.corner(node, i));
+  return out;
+}
+
+// The star around the middle of a base quad is turned: its middle is joined to the region's corners instead of their midpoints.
+class DrawnRegions : public ::testing::TestWithParam<int> {
+ protected:
+  DrawnRegions() {
+    options_.levels = 4;
+    plain_ = run(soup_, options_, plan_.dump());
+    const auto at = corners_of(plain_.hierarchy, 2);
+    Json quads = Json::array(), curves = Json::array();
+    for (int k = 0; k < 4; ++k) {
+      quads.push_back("1." + std::to_string(k) + "." + std::to_string((k + 2) % 4));
+      const int node = node_at(plain_.hierarchy, 1, {k, (k + 2) % 4});
+      removed_.push_back(node);
+      const Vec3 corner = at.at({node, k}), middle = at.at({node, (k + 2) % 4});
+      curves.push_back({{"points", {{corner.x(), corner.y(), corner.z()}, {middle.x(), middle.y(), middle.z()}}}});
+    }
+    operation_ = {{"level", 2}, {"quads", quads}, {"curves", curves}, {"buffer_rings", GetParam()}};
+  }
+  const PolygonSoup soup_ = ball(24);
+  RemeshOptions options_;
+  Json plan_ = cube_plan(), operation_;
+  RemeshResult plain_;
+  std::vector<int> removed_;
+};
+INSTANTIATE_TEST_SUITE_P(BufferRings, DrawnRegions, ::testing::Values(0, 1, 2));
+
+TEST_P(DrawnRegions, AreLaidOutAnewAndNothingElseChanges) {
+  plan_["operations"] = Json::array({operation_});
+  const RemeshResult made = run(soup_, options_, plan_.dump());
+  const HybridMesh& h = made.hierarchy;
+  EXPECT_TRUE(find_defects(h).empty());
+  ASSERT_EQ(h.operation_count(), 1);
+  EXPECT_EQ(h.operation(0).repatch.removed.size(), 4u);
+  EXPECT_EQ(h.operation(0).roots.size(), 4u);
+  EXPECT_EQ(summarize_topology(to_soup(made.final_mesh)).euler, 2);
+  for (int n = 0; n < h.node_count(); ++n)
+    if (const PatchMap* map = h.map(n)) {
+      EXPECT_STREQ(find_map_defect(*map), "") << n;
+    }
+  // Maps: the base's, those of the new quads, and of as many rings around as were asked for.
+  int own = 0;
+  for (int n = h.base_count(); n < h.node_count(); ++n) own += h.map(n) != nullptr;
+  EXPECT_EQ(own, std::vector<int>({4, 16, 32})[GetParam()]);  // two rings reach over the cube's edges, at whose ends three quads meet
+  // What has no map of its own lies where it lay.
+  const auto before = corners_of(plain_.hierarchy, 2), after = corners_of(h, 2);
+  int same = 0;
+  for (const auto& [corner, p] : after) {
+    const int node = corner.first;
+    if (h.map(node) || h.inserted_by(node) >= 0) continue;
+    EXPECT_NEAR((p - before.at(corner)).norm(), 0, 1e-9);
+    ++same;
+  }
+  EXPECT_EQ(same, 4 * (96 - own));
+  // All maps meet along their sides.
+  const QuadMesh fine = h.level_mesh(4);
+  for (std::size_t f = 0; f < fine.face_count(); ++f)
+    for (int i = 0; i < 4; ++i) {
+      const SideLink other = h.neighbour(fine.node[f], i);
+      ASSERT_TRUE(other.valid());
+      for (const auto& [a, b] : {std::pair(i, (other.side + 1) % 4), std::pair((i + 1) % 4, other.side)}) {
+        const auto place = [&](int node, int corner) {
+          const int owner = h.map_owner(node);
+          const HybridMesh::Square s = h.square_in(node, owner);
+          return h.sample(MapLocation{owner, s.u + s.width * (corner == 1 || corner == 2), s.v + s.width * (corner >= 2)}).position;
+        };
+        EXPECT_NEAR((place(fine.node[f], a) - place(other.node, b)).norm(), 0, 2e-7);  // weights of sources are single-precision
+      }
+    }
+  const RemeshResult again = run(soup_, options_, made.plan);
+  EXPECT_EQ(encode_hierarchy(h, "{}"), encode_hierarchy(again.hierarchy, "{}"));
+}
+
+TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
+  const auto problems = [&](const Json& operation) {
+    plan_["operations"] = Json::array({operation});
+    try {
+      run(soup_, options_, plan_.dump());
+    } catch (const LayoutError& e) {
+      return e.problems;
+    }
+    return std::vector<LayoutProblem>();
+  };
+  Json few = operation_;
+  few["curves"].erase(0);
+  const auto many_sides = problems(few);
+  ASSERT_EQ(many_sides.size(), 1u);
+  EXPECT_STREQ(name_of(many_sides[0].kind), "many_sides");
+  const SurfaceDistanceQuery query(plain_.repaired.points, plain_.repaired.faces);
+  for (const Vec3& p : many_sides[0].where) EXPECT_LE(std::sqrt(query.closest(p).squared_distance), 1e-6);  // in the input's space
+  Json short_one = operation_;
+  short_one["curves"][0]["points"][0] = short_one["curves"][0]["points"][1];
+  for (int i = 0; i < 3; ++i)
+    short_one["curves"][0]["points"][0][i] = 0.5 * operation_["curves"][0]["points"][0][i].get<double>() + 0.5 * operation_["curves"][0]["points"][1][i].get<double>();
+  bool dangling = false;
+  for (const LayoutProblem& p : problems(short_one)) dangling |= p.kind == LayoutProblem::Kind::Dangling;
+  EXPECT_TRUE(dangling);
+  for (const auto& spoil : std::vector<std::function<void(Json&)>>{[](Json& o) { o["quads"][0] = "1.0"; }, [](Json& o) { o["quads"] = {"1.0.0", "1.2.2"}; }, [](Json& o) { o["level"] = 0; },
+                                                                   [](Json& o) { o["buffer_rings"] = -1; }, [](Json& o) { o["quads"] = Json::array(); }}) {
+    Json bad = operation_;
+    spoil(bad);
+    plan_["operations"] = Json::array({bad});
+    EXPECT_THROW(run(soup_, options_, plan_.dump()), Error);
+  }
 }
 
 TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Remeshes from drawn layouts and of drawn regions."""
+
+import json
+
+import bpy
+import numpy
+import pytest
+
+from conftest import module
+from test_layouts import broken_cube, cube_lines, draw, layout_of, read, state, strokes
+
+
+def plan_of(obj):
+    return module("features.levels.properties").plan_of(module("features.levels.properties").hierarchy_of(obj))
+
+
+def address(obj, face):
+    meshes = module("bridge.meshes")
+    return module("core.plans").address(*(int(meshes.face_numbers(obj, name)[face]) for name in (meshes.ROOT, meshes.PATH)))
+
+
+def refused(operator, words, **settings):
+    before = {collection.name for collection in bpy.data.collections}
+    with pytest.raises(RuntimeError, match=words):
+        operator(**settings)
+    assert {collection.name for collection in bpy.data.collections} == before
+
+
+def from_layout(world, scan, vertices=2000):
+    draw(scan, cube_lines(scan))
+    bpy.context.scene.hybrid_mesh.vertices, bpy.context.scene.hybrid_mesh.hide_source = vertices, False
+    assert bpy.ops.hybrid_mesh.remesh_layout() == {"FINISHED"}
+    return world.hierarchy(scan)
+
+
+@pytest.mark.parametrize("place", [{}, {"location": (5, -2, 1), "rotation_euler": (0.4, -1.2, 2.5), "scale": (0.3, 2, 1.1)}])
+def test_the_base_is_what_was_drawn(world, place):
+    scan = world.scan(**place)
+    before = state(scan)
+    _, levels, preview = from_layout(world, scan)
+    assert state(scan) == before and bpy.context.object == preview and bpy.context.mode == "OBJECT"
+    assert [len(level.data.polygons) for level in levels] == [6 * 4**number for number in range(len(levels))] and len(levels) >= 4
+    assert all(level.matrix_world == scan.matrix_world for level in levels)
+    assert world.distance(scan, levels[-1])["hausdorff"] < 0.03
+    # Every corner of the base is one of the nodes that were drawn, though they have moved to where the map is even.
+    corners = world.evaluated(levels[0])[0]
+    nodes = numpy.array([line[end] for line in read(layout_of(scan)) for end in (0, -1)])
+    nodes = numpy.array(sorted({tuple(numpy.round(node, 1)) for node in nodes}))
+    assert len(nodes) == len(corners) == 8
+    assert len(set(numpy.linalg.norm(corners[:, None] - nodes, axis=2).argmin(axis=1))) == 8
+
+
+def test_a_layout_with_problems_is_not_remeshed(world):
+    scan = world.scan()
+    layout = draw(scan, broken_cube(scan))
+    refused(bpy.ops.hybrid_mesh.remesh_layout, "marked in red")
+    assert len(layout.hybrid_mesh_layout.problems) and layout_of(scan, "PROBLEMS") is not None
+    # Put right, it is, and the marks go.
+    strokes().remove_layers(layout)
+    strokes().write(layout, strokes().add_layer(layout, "again", 1), 1, cube_lines(scan))
+    assert bpy.ops.hybrid_mesh.remesh_layout() == {"FINISHED"}
+    assert not len(layout.hybrid_mesh_layout.problems) and layout_of(scan, "PROBLEMS") is None
+
+
+def test_a_remesh_from_a_layout_is_one_undo_step(world):
+    draw(world.scan(), cube_lines(bpy.data.objects["scan"]))
+    bpy.context.scene.hybrid_mesh.vertices = 500
+    bpy.ops.ed.undo_push(message="before")
+    names = {obj.name for obj in bpy.data.objects}
+    assert bpy.ops.hybrid_mesh.remesh_layout("EXEC_DEFAULT", True) == {"FINISHED"}
+    assert {obj.name for obj in bpy.data.objects} > names
+    bpy.ops.ed.undo()
+    assert {obj.name for obj in bpy.data.objects} == names and "scan hierarchy" not in bpy.data.collections
+
+
+def test_every_hierarchy_keeps_its_plan(world, tmp_path):
+    scan = world.scan()
+    world.remesh(scan, vertices=500)
+    text = plan_of(scan)
+    plan = json.loads(text)
+    assert plan["format"] == "hybrid-mesh plan" and plan["version"] == 1 and len(plan["base"]["quads"]) > 0 and "operations" not in plan
+    path = str(tmp_path / "plan.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert plan_of(bpy.data.objects["scan"]) == text
+
+
+def test_level_faces_have_addresses(world):
+    _, levels, _ = world.remesh(world.scan(), vertices=500)
+    for number, level in enumerate(levels):
+        found = [address(level, face) for face in range(len(level.data.polygons))]
+        assert len(set(found)) == len(found) and {one.count(".") for one in found} == {number}
+    # Children lie where their parents do.
+    parents = {address(levels[0], face): levels[0].data.polygons[face].center for face in range(len(levels[0].data.polygons))}
+    gaps = [(polygon.center - parents[address(levels[1], polygon.index).split(".")[0]]).length for polygon in levels[1].data.polygons]
+    assert max(gaps) < 0.6 * levels[0].dimensions.length
+
+
+class Region:
+    """Two neighbouring quads of N1 over which another side between them is drawn."""
+
+    def __init__(self, world, scan):
+        _, self.levels, self.preview = from_layout(world, scan)
+        self.scan, self.level = scan, self.levels[1]
+        mesh = self.level.data
+        self.faces = self._pair(mesh)
+        world.select(self.level)
+        for polygon in mesh.polygons:
+            polygon.select = polygon.index in self.faces
+        self.addresses = sorted((address(self.level, face) for face in self.faces), key=lambda text: [int(one) for one in text.split(".")])
+
+    def _pair(self, mesh):
+        edge = mesh.polygons[0].edge_keys[0]
+        return {0, next(polygon.index for polygon in mesh.polygons if polygon.index and edge in polygon.edge_keys)}
+
+    def line(self):
+        """From a corner of the region's six to the one opposite, through the middle: two new quads."""
+        mesh, place = self.level.data, self.level.matrix_world
+        first, second = (mesh.polygons[face] for face in sorted(self.faces))
+        shared = next(key for key in first.edge_keys if key in second.edge_keys)
+
+        def beside(polygon, corner):
+            return next(({*key} - {corner}).pop() for key in polygon.edge_keys if corner in key and key != shared)
+
+        one, other = mesh.vertices[beside(first, shared[0])].co, mesh.vertices[beside(second, shared[1])].co
+        middle = (mesh.vertices[shared[0]].co + mesh.vertices[shared[1]].co) / 2
+        return numpy.array([place @ point for point in (one, (one + middle) / 2, middle, (middle + other) / 2, other)])
+
+    def draw(self, lines):
+        # Draw Layout keeps the selection of faces.
+        return draw(self.level, lines)
+
+
+@pytest.fixture
+def region(world):
+    return Region(world, world.scan(rotation_euler=(0.3, 0.2, 0.1), scale=(1, 1.5, 0.8)))
+
+
+def test_a_region_becomes_an_operation(world, region):
+    region.draw([region.line()])
+    before = state(region.scan)
+    old = {obj.name for obj in bpy.context.scene.objects}
+    assert bpy.ops.hybrid_mesh.repatch_region(buffer_rings=2) == {"FINISHED"}
+    assert state(region.scan) == before
+    preview = bpy.context.object
+    assert preview.name not in old and bpy.context.mode == "OBJECT"
+    plan = json.loads(plan_of(preview))
+    assert [(one["level"], one["quads"], one["buffer_rings"]) for one in plan["operations"]] == [(1, region.addresses, 2)]
+    made = [obj for obj in preview.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.role == "LEVEL"]
+    final = max(made, key=lambda obj: len(obj.data.polygons))
+    assert module("bridge.meshes").get_attribute(final.data, "irregular").any()
+    assert world.distance(region.scan, final)["hausdorff"] < 0.03
+    # What was there before is out of sight.
+    assert not any(bpy.data.objects[obj.name].visible_get() for obj in region.levels)
+
+
+def test_a_region_is_taken_in_edit_mode(world, region):
+    region.draw([region.line()])
+    bpy.ops.object.mode_set(mode="OBJECT")
+    world.select(region.level)
+    bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bpy.ops.hybrid_mesh.repatch_region() == {"FINISHED"}
+    assert json.loads(plan_of(bpy.context.object))["operations"][0]["quads"] == region.addresses
+
+
+def test_problems_of_a_region_are_marked(world, region):
+    layout = region.draw([region.line()[:3]])  # ends in the middle of nowhere
+    refused(bpy.ops.hybrid_mesh.repatch_region, "curve|face")
+    assert len(layout.hybrid_mesh_layout.problems) and layout_of(region.level, "PROBLEMS") is not None
+
+
+def test_what_is_no_region(world, region):
+    refused(bpy.ops.hybrid_mesh.repatch_region, "no layout")
+    region.draw([region.line()])
+    hierarchy, mesh = region.level.hybrid_mesh.hierarchy, region.level.data
+    for face in region.faces:
+        mesh.polygons[face].select = False
+    refused(bpy.ops.hybrid_mesh.repatch_region, "no faces are selected")
+    mesh.polygons[0].select = True
+    plan = plan_of(region.scan)
+    hierarchy.hybrid_mesh.plan.clear()
+    hierarchy.hybrid_mesh.plan.write("{}")
+    refused(bpy.ops.hybrid_mesh.repatch_region, "plan")
+    hierarchy.hybrid_mesh.plan.clear()
+    hierarchy.hybrid_mesh.plan.write(plan)
+    path = mesh.attributes["path"].data[0].value
+    mesh.attributes["path"].data[0].value = 1
+    refused(bpy.ops.hybrid_mesh.repatch_region, "another level")
+    mesh.attributes["path"].data[0].value = 0
+    refused(bpy.ops.hybrid_mesh.repatch_region, "not made by a remesh")
+    mesh.attributes["path"].data[0].value = path
+    hierarchy.hybrid_mesh.source = None
+    refused(bpy.ops.hybrid_mesh.repatch_region, "gone")
+    world.select(region.scan)
+    assert not bpy.ops.hybrid_mesh.repatch_region.poll()
