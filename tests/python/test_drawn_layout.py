@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import json
+
 import numpy as np
 import pytest
 from hybrid_mesh import _native
@@ -41,6 +43,38 @@ def cube_strokes(rng, noise):
             line /= np.linalg.norm(line, axis=1, keepdims=True)
             strokes.append({"points": line + rng.uniform(-noise, noise, line.shape), "fit": "tight"})
     return strokes
+
+
+def test_a_layout_of_quads_is_the_base_of_a_remesh():
+    mesh = sphere(12)
+    drawn = _native.layout_plan(*triangles(mesh), cube_strokes(np.random.default_rng(1), 0.01))
+    assert drawn["problems"] == [] and len(drawn["faces"]) == 6
+    made = _native.remesh(*mesh, {"vertices": 2000, "plan": drawn["plan"]})
+    base = made.hierarchy.level("N0")
+    assert len(base["offsets"]) - 1 == 6
+    again = _native.remesh(*mesh, {"vertices": 2000, "plan": made.plan})
+    assert (again.final_mesh()["points"] == made.final_mesh()["points"]).all()
+    # Every face has the address of a quad of its own.
+    level = made.hierarchy.level("N2")
+    assert set(zip(level["root"], level["path"])) == {(root, path) for root in range(6) for path in range(16, 32)}
+
+
+def test_a_layout_of_other_faces_is_no_base():
+    strokes = cube_strokes(np.random.default_rng(1), 0.01)
+    drawn = _native.layout_plan(*triangles(sphere(12)), strokes[1:])
+    assert drawn["plan"] == "" and [p["kind"] for p in drawn["problems"]] == ["many_sides"]
+    assert _native.make_layout(*triangles(sphere(12)), strokes[1:])["problems"] == []
+
+
+def test_problems_of_a_region_come_with_their_places():
+    mesh = sphere(12)
+    plan = json.loads(_native.layout_plan(*triangles(mesh), cube_strokes(np.random.default_rng(1), 0.01))["plan"])
+    plan["operations"] = [{"level": 1, "quads": ["0.0", "0.1", "0.2", "0.3"], "curves": []}]
+    with pytest.raises(_native.LayoutError) as caught:
+        _native.remesh(*mesh, {"levels": 2, "plan": json.dumps(plan)})
+    assert isinstance(caught.value, _native.InvalidInput)
+    message, problems = caught.value.args
+    assert "8 sides" in message and [p["kind"] for p in problems] == ["many_sides"] and len(problems[0]["points"]) > 8
 
 
 def check_layout(result, points, faces):

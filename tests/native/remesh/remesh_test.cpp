@@ -78,8 +78,8 @@ PolygonSoup spiked_ball(int n) {
   PolygonSoup soup = ball(n);
   for (Vec3& p : soup.points) {
     const double r = p.norm(), z = p.z() / r, x = p.x() / r;
-    if (z > 0.9) p.z() += 12 * (z - 0.9) * r;
-    if (x > 0.9) p.x() += 9 * (x - 0.9) * r;
+    if (z > 0.9) p.z() += 30 * (z - 0.9) * r;
+    if (x > 0.9) p.x() += 24 * (x - 0.9) * r;
   }
   return soup;
 }
@@ -141,7 +141,17 @@ TEST_P(RemeshKinds, GrowSkinWithinTheHierarchyOfACube) {
   const RemeshResult plain = run(soup, options);
   EXPECT_EQ(plain.hierarchy.operation_count(), 0);
   const auto q = [](const RemeshResult& r) { return r.report["final"]["l2"].get<double>() * r.report["final"]["vertices"].get<double>(); };
-  EXPECT_LT(q(hybrid), q(plain));
+  const auto jacobian = [](const RemeshResult& r) { return r.report["final"]["scaled_jacobian"]["p05"].get<double>(); };
+  const auto stretch = [](const RemeshResult& r) {
+    const auto& of = r.report["levels"].back()["stretch"];
+    return of["p95"].get<double>() / of["p05"].get<double>();
+  };
+  EXPECT_GT(jacobian(hybrid), jacobian(plain));
+  EXPECT_LT(stretch(hybrid), stretch(plain));
+  // Adaptive refinement makes up for stretched quads by their number.
+  if (GetParam() == Refinement::Uniform) {
+    EXPECT_LT(q(hybrid), q(plain));
+  }
 }
 
 TEST(Remesh, LevelsAreExactWhenAskedFor) {
