@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Features much longer than wide: they are mapped without degenerating, and their tips are kept.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "remesh/remesh.h"
+#include "surface/topology_summary.h"
+
+namespace hybrid_mesh {
+namespace {
+
+// A grid of rows x columns points, closed around in both directions or with a pole at either end.
+PolygonSoup grid(int rows, int columns, bool torus, const std::function<Vec3(int, int)>& place) {
+  PolygonSoup soup;
+  const auto add = [&](std::initializer_list<int> face) {
+    for (const int v : face) soup.indices.push_back(v);
+    soup.offsets.push_back(static_cast<std::int64_t>(soup.indices.size()));
+  };
+  if (soup.offsets.empty()) soup.offsets.push_back(0);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) soup.points.push_back(place(i, j));
+  for (int i = 0; i + (torus ? 0 : 1) < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const int k = (i + 1) % rows, l = (j + 1) % columns;
+      add({i * columns + j, k * columns + j, k * columns + l});
+      add({i * columns + j, k * columns + l, i * columns + l});
+    }
+  if (torus) return soup;
+  const auto pole = [&](int row, bool first) {
+    Vec3 middle = Vec3::Zero();
+    for (int j = 0; j < columns; ++j) middle += soup.points[row * columns + j] / columns;
+    soup.points.push_back(middle);
+    for (int j = 0; j < columns; ++j) {
+      const int a = row * columns + j, b = row * columns + (j + 1) % columns, p = static_cast<int>(soup.points.size()) - 1;
+      first ? add({p, a, b}) : add({p, b, a});
+    }
+  };
+  pole(0, true);
+  pole(rows - 1, false);
+  return soup;
+}
+
+// A ball with a rod of 30 times its width.
+PolygonSoup rod() {
+  const double r = 0.1, length = 6, z0 = std::sqrt(1 - r * r), a0 = std::asin(r);
+  std::vector<Vec2> profile;
+  for (int i = 1; i < 6; ++i) profile.push_back(Vec2(r * std::sin(std::numbers::pi / 12 * i), z0 + length - r + r * std::cos(std::numbers::pi / 12 * i)));
+  for (int i = 0; i < 120; ++i) profile.push_back(Vec2(r, z0 + length - r - (length - r) * i / 120));
+  for (int i = 0; i < 39; ++i) profile.push_back(Vec2(std::sin(a0 + (std::numbers::pi - a0) * i / 40), std::cos(a0 + (std::numbers::pi - a0) * i / 40)));
+  return grid(static_cast<int>(profile.size()), 24, false, [&](int i, int j) {
+    const double a = 2 * std::numbers::pi * j / 24;
+    return Vec3(profile[i].x() * std::cos(a), profile[i].x() * std::sin(a), profile[i].y());
+  });
+}
+
+// Pulls a point out along a direction where it is near a foot.
+Vec3 pulled(const Vec3& p, const Vec3& foot, const Vec3& direction) { return p + 1.5 * std::exp(-(p - foot).squaredNorm() / (0.06 * 0.06)) * direction; }
+
+PolygonSoup torus_with_a_spike() {
+  return grid(300, 120, true, [](int i, int j) {
+    const double a = 2 * std::numbers::pi * i / 300, b = 2 * std::numbers::pi * j / 120;
+    const Vec3 p((1 + 0.35 * std::cos(b)) * std::cos(a), (1 + 0.35 * std::cos(b)) * std::sin(a), 0.35 * std::sin(b));
+    return pulled(p, Vec3(1.35, 0, 0), Vec3::UnitX());
+  });
+}
+
+PolygonSoup two_spikes() {
+  return grid(199, 300, false, [](int i, int j) {
+    const double b = std::numbers::pi * (i + 1) / 200, a = 2 * std::numbers::pi * j / 300;
+    const Vec3 p(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b));
+    const Vec3 x = Vec3::UnitX(), y(std::cos(0.3), std::sin(0.3), 0);
+    return pulled(pulled(p, x, x), y, y);
+  });
+}
+
+void expect_kept(const PolygonSoup& soup) {
+  RemeshOptions options;
+  options.vertices = 6000;
+  options.refinement = Refinement::Adaptive;
+  options.base = BaseSize::Minimal;
+  Context context;
+  const RemeshResult r = remesh(soup, options, context);
+  EXPECT_TRUE(find_defects(r.hierarchy).empty());
+  const TopologySummary before = summarize_topology(to_soup(r.repaired)), after = summarize_topology(to_soup(r.final_mesh));
+  EXPECT_EQ(after.euler, before.euler);
+  EXPECT_EQ(after.nonmanifold_edges + after.nonmanifold_vertices + after.misoriented_edges, 0);
+  EXPECT_LE(r.report["final"]["hausdorff"].get<double>(), 0.01);
+  for (int n = 0; n < r.hierarchy.node_count(); ++n)
+    if (const PatchMap* map = r.hierarchy.map(n)) {
+      EXPECT_STREQ(find_map_defect(*map), "") << n;
+    }
+}
+
+TEST(Spikes, ARodIsKept) { expect_kept(rod()); }
+TEST(Spikes, OneOnATorusIsKept) { expect_kept(torus_with_a_spike()); }
+TEST(Spikes, TwoSideBySideAreKept) { expect_kept(two_spikes()); }
+
+}  // namespace
+}  // namespace hybrid_mesh
