@@ -64,7 +64,8 @@ BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& bas
     try {
       CarriedMap map(surface, base.cut(factor * vertices / base.quads(), progress.part(begin, begin + 0.05)));
       const bool first = edits.empty();
-      LayoutSearchResult found = first ? search(std::move(map), progress.part(begin + 0.05, begin == 0 ? 0.6 : 0.8)) : repeat_edits(std::move(map), edits, options, progress.part(begin + 0.05, 0.8));
+      const Progress part = progress.part(begin + 0.05, begin == 0 ? 0.6 : 0.8);
+      LayoutSearchResult found = first ? search(std::move(map), part) : repeat_edits(std::move(map), edits, options, part);
       edits = found.edits;
       if (first) script = found.script;
       BaseMap out = carried(std::move(found), options, progress.part(0.8, 1));

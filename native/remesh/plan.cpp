@@ -50,8 +50,9 @@ class Entry {
     return out;
   }
   std::int64_t integer(std::int64_t least, std::int64_t most) const {
-    const bool in_range = json_->is_number_integer() && (!json_->is_number_unsigned() || json_->get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()));
-    if (!in_range || json_->get<std::int64_t>() < least || json_->get<std::int64_t>() > most)
+    // What is larger than any signed number would become a negative one.
+    const bool huge = json_->is_number_unsigned() && json_->get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    if (!json_->is_number_integer() || huge || json_->get<std::int64_t>() < least || json_->get<std::int64_t>() > most)
       refuse("must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return json_->get<std::int64_t>();
   }
@@ -211,7 +212,8 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
     edit.quads.push_back(q);
   }
   edit.inner_nodes = static_cast<int>(inner.size());
-  if (!inner.empty() && *inner.rbegin() != corners + edit.inner_nodes - 1) entry.at("new_quads").refuse("must number its new nodes from " + std::to_string(corners) + " on without gaps");
+  if (!inner.empty() && *inner.rbegin() != corners + edit.inner_nodes - 1)
+    entry.at("new_quads").refuse("must number its new nodes from " + std::to_string(corners) + " on without gaps");
   for (int k = 0; k < corners; ++k)
     if (sides.erase({k, (k + 1) % corners}) != 1) entry.at("new_quads").refuse("have no side from corner " + std::to_string(k) + " to the next");
   for (const auto& [side, count] : sides)

@@ -413,7 +413,8 @@ class Remesher {
     int at = 0;
     for (const Plan::Region& region : regions) {
       if (region.level < map.levels.back().level)
-        throw Error(ErrorCode::InvalidInput, "a region of level " + std::to_string(region.level) + " cannot be laid out anew: level " + std::to_string(map.levels.back().level) + " has operations already");
+        throw Error(ErrorCode::InvalidInput, "a region of level " + std::to_string(region.level) + " cannot be laid out anew: level " +
+                                                 std::to_string(map.levels.back().level) + " has operations already");
       while (at < region.level) {
         layout.quadrisect();
         if (++at < static_cast<int>(map.script.levels.size())) apply_level(layout, map.script.levels[at]);
@@ -790,7 +791,11 @@ class Remesher {
     for (int i = 0; i < h.operation_count(); ++i) inserted += static_cast<std::int64_t>(h.operation(i).roots.size());
     // Quads where sizes meet are neither regular nor inserted.
     std::int64_t regular = 0;
-    for (const std::int32_t node : mesh.node) regular += !(h.has_finer_neighbour(node, 0) || h.has_finer_neighbour(node, 1) || h.has_finer_neighbour(node, 2) || h.has_finer_neighbour(node, 3));
+    for (const std::int32_t node : mesh.node) {
+      bool transition = false;
+      for (int side = 0; side < 4; ++side) transition |= h.has_finer_neighbour(node, side);
+      regular += !transition;
+    }
     report_["final"] = {{"vertices", mesh.points.size()},
                         {"quads", q.quads},
                         {"triangles", q.triangles},

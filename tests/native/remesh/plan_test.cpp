@@ -232,8 +232,10 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
   bool dangling = false;
   for (const LayoutProblem& p : problems(short_one)) dangling |= p.kind == LayoutProblem::Kind::Dangling;
   EXPECT_TRUE(dangling);
-  for (const auto& spoil : std::vector<std::function<void(Json&)>>{[](Json& o) { o["quads"][0] = "1.0"; }, [](Json& o) { o["quads"] = {"1.0.0", "1.2.2"}; }, [](Json& o) { o["level"] = 0; },
-                                                                   [](Json& o) { o["buffer_rings"] = -1; }, [](Json& o) { o["quads"] = Json::array(); }}) {
+  const std::vector<std::function<void(Json&)>> mistakes = {[](Json& o) { o["quads"][0] = "1.0"; }, [](Json& o) { o["quads"] = {"1.0.0", "1.2.2"}; },
+                                                            [](Json& o) { o["level"] = 0; }, [](Json& o) { o["buffer_rings"] = -1; },
+                                                            [](Json& o) { o["quads"] = Json::array(); }};
+  for (const auto& spoil : mistakes) {
     Json bad = operation_;
     spoil(bad);
     plan_["operations"] = Json::array({bad});
