@@ -27,6 +27,8 @@ def check_mesh(mesh):
         "stretch": (np.float32, (faces,)),
         "anisotropy": (np.float32, (faces,)),
         "patch": (np.int32, (faces,)),
+        "root": (np.int32, (faces,)),
+        "path": (np.int32, (faces,)),
         "irregular": (np.bool_, (faces,)),
         "uv": (np.float32, (corners, 2)),
         "source_face": (np.int32, (points,)),
