@@ -30,9 +30,8 @@ class ConvexMap {
   std::vector<int> side_chords(const std::vector<int>& faces, const std::vector<DiskSide>& sides);
 
  private:
-  enum class Weights { MeanValue, SquareRoot, Uniform };
+  class Embedding;
   std::vector<double> arc_fractions(const std::vector<int>& side) const;
-  bool embed(const std::vector<int>& faces, const std::vector<DiskSide>& sides, const std::vector<Vec2>& polygon, Weights kind, std::vector<std::array<Vec2, 3>>& corners);
 
   const TriangleSurface& mesh_;
   std::vector<int> index_;  // per point of the mesh: its row while a disk is mapped, else -1
