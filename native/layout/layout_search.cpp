@@ -185,7 +185,10 @@ class LayoutSearch {
     std::vector<char> poor(s.patch_count(), 0);
     for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->relayout || energy_[q] * all > options_->relayout * area[q] * s.patch_count();
     std::vector<LayoutScript::EvenLayout> chosen;
-    for (const PatchRegion& region : disks(dilated(poor))) {
+    std::vector<char> wide = dilated(poor);
+    // A region has a boundary: where all is poor, the best stays.
+    if (std::find(wide.begin(), wide.end(), 0) == wide.end()) wide[std::min_element(energy_.begin(), energy_.end()) - energy_.begin()] = 0;
+    for (const PatchRegion& region : disks(std::move(wide))) {
       double wanted = 0;
       for (const int q : region.patches) wanted += area[q] / all * (options_->even_quads > 0 ? options_->even_quads : s.patch_count());
       wanted = std::max(wanted, 1.0);

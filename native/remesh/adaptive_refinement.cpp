@@ -11,7 +11,6 @@
 
 #include "remesh/surface_fit.h"
 #include "remesh/surface_samples.h"
-#include "surface/distance.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -169,7 +168,7 @@ class Splitter {
 
 class AdaptiveRefinement {
  public:
-  AdaptiveRefinement(const HybridMesh& base, const PolygonSoup& surface, const AdaptiveOptions& options)
+  AdaptiveRefinement(const HybridMesh& base, const DistanceReference& surface, const AdaptiveOptions& options)
       : surface_(surface), options_(options), budget_(options.vertices > 0 ? options.vertices : most_vertices), base_(base) {}
 
   QuadMesh run(HybridMesh& result, const Progress& progress) {
@@ -205,7 +204,7 @@ class AdaptiveRefinement {
   }
 
   double distance(const QuadMesh& mesh, const Progress& progress) const {
-    return surface_distance(surface_, to_soup(mesh), DistanceOptions(), progress).l2;
+    return surface_.distance(to_soup(mesh), DistanceOptions(), progress).l2;
   }
 
   static LeafErrors errors_of(const LeafMesh& leaves, const Progress& progress) {
@@ -334,7 +333,7 @@ class AdaptiveRefinement {
     }
   }
 
-  const PolygonSoup& surface_;
+  const DistanceReference& surface_;
   const AdaptiveOptions& options_;
   const std::int64_t budget_;
   const HybridMesh& base_;
@@ -342,7 +341,7 @@ class AdaptiveRefinement {
 
 }  // namespace
 
-QuadMesh refine_adaptively(HybridMesh& hierarchy, const PolygonSoup& surface, const AdaptiveOptions& options, const Progress& progress) {
+QuadMesh refine_adaptively(HybridMesh& hierarchy, const DistanceReference& surface, const AdaptiveOptions& options, const Progress& progress) {
   return AdaptiveRefinement(hierarchy, surface, options).run(hierarchy, progress);
 }
 

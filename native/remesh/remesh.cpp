@@ -2,6 +2,7 @@
 #include "remesh/remesh.h"
 
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
@@ -228,30 +229,30 @@ class Remesher {
     search.vertices = std::max(1500.0, 30.0 * base.quads());
     // Only disks can be laid out anew, and where there are handles disks are a small part.
     if (options_.semi_regular || attempt >= 4 || topology_.genus > topology_.components) return search;
-    const auto may_add = [&](double quads, double enough) { return quads < enough && static_cast<int>(search.finer.size()) != options_.levels; };
-    for (double quads = base.quads(); may_add(quads, kFeatureQuads) || (quads >= kFeatureQuads && may_add(quads, kEvenQuads));) {
-      const bool last = quads >= kFeatureQuads;
+    double quads = base.quads();
+    while (quads < kEnoughQuads && static_cast<int>(search.finer.size()) != options_.levels) {
       quads *= 4;
       LayoutSearchOptions level = search;
       level.finer.clear();
       level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
-      level.vertices = std::max(1500.0, (attempt == 1 ? 60 : last ? 30 : 34) * quads);
+      level.vertices = std::max(1500.0, (attempt == 1 ? 60 : 30) * quads);
       level.quads = static_cast<int>(1.3 * quads);
       level.rounds = 0;
-      // First what sticks out, for which there are hardly any quads; then quads of even size, which are to be refined regularly from there on.
-      if (quads >= kFeatureQuads) {
-        level.rounds = last ? 0 : 1;
-        level.trials = 30;
-        level.relayout = excess_of_stretch(last ? std::pow(options_.stretch_threshold, 0.45) : options_.stretch_threshold);
-        if (last) level.even_quads = quads_for_budget(quads);
-      }
       search.finer.push_back(level);
     }
+    if (quads < kLeastQuads || search.finer.empty()) return search;
+    LayoutSearchOptions& last = search.finer.back();
+    // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
+    last.relayout = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
+    last.even_quads = quads_for_budget(quads);
+    last.rounds = 1;
+    last.trials = 30;
     return search;
   }
 
-  // Levels with irregular operations: the first with so many quads, and one more where it has fewer than the second number.
-  static constexpr double kFeatureQuads = 60, kEvenQuads = 250;
+  // Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too few to choose from. Two levels with
+  // operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice, and neither the distances nor the angles are better.
+  static constexpr double kLeastQuads = 60, kEnoughQuads = 250;
 
   // Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
   static double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
@@ -516,8 +517,11 @@ class Remesher {
   // --- levels ----------------------------------------------------------------------------------------------------------------------
   void build_levels() {
     HybridMesh& h = result_.hierarchy;
-    input_unit_ = input_;
-    for (Vec3& p : input_unit_.points) p = placement_.to_unit(p);
+    if (!reference_) {
+      PolygonSoup unit = input_;
+      for (Vec3& p : unit.points) p = placement_.to_unit(p);
+      reference_.emplace(unit);
+    }
     if (options_.refinement == Refinement::Uniform)
       refine_uniformly();
     else
@@ -526,19 +530,26 @@ class Remesher {
     watch_.start("levels");
     report_["levels"] = Json::array();
     const int depth = h.depth();
-    for (int j = 0; j <= depth; ++j) {
-      const Progress part = progress_.part(0.8 + 0.15 * j / (depth + 1), 0.8 + 0.15 * (j + 1) / (depth + 1));
+    std::vector<QuadMesh> meshes(depth + 1);
+    std::vector<Json> descriptions(depth + 1);
+    // The finest, which take the longest, first.
+    tbb::parallel_for(0, depth + 1, [&](int k) {
+      const int j = depth - k;
       const bool last = j == depth;
-      QuadMesh mesh = last ? result_.final_mesh : h.level_mesh(j);
+      const Progress part = progress_.part(0.8, last ? 0.95 : 0.8);
+      meshes[j] = last ? result_.final_mesh : h.level_mesh(j);
       if (!last) {
         // Quads much larger than the shape's features: held closer to where the map puts them, or corners overshoot tips.
         FitOptions coarse;
         coarse.rounds = 1;
         coarse.tangential = 0.1;
-        fit(mesh, coarse, 1, j, part);
+        fit(meshes[j], coarse, 1, j, part);
       }
-      h.set_level_positions(j, mesh);
-      report_["levels"].push_back(describe_level(j, last, mesh, part));
+      descriptions[j] = describe_level(j, last, meshes[j], part);
+    });
+    for (int j = 0; j <= depth; ++j) {
+      h.set_level_positions(j, meshes[j]);
+      report_["levels"].push_back(std::move(descriptions[j]));
     }
     watch_.stop();
   }
@@ -564,7 +575,7 @@ class Remesher {
   double measured_l2(const QuadMesh& mesh, std::int64_t samples) {
     DistanceOptions distance;
     distance.samples = samples;
-    return surface_distance(input_unit_, to_soup(mesh), distance, progress_.part(0.6, 0.6)).l2;
+    return reference_->distance(to_soup(mesh), distance, progress_.part(0.6, 0.6)).l2;
   }
 
   // Measured as the report does, so that it says the same; fewer samples are enough to see that a mesh is far off.
@@ -705,7 +716,7 @@ class Remesher {
     adaptive.vertices = options_.error > 0 && options_.vertices == 0 ? 0 : budget_.vertices;
     adaptive.error = options_.error;
     if (options_.levels >= 0) adaptive.deepest = options_.levels;
-    result_.final_mesh = hybrid_mesh::refine_adaptively(result_.hierarchy, input_unit_, adaptive, progress_.part(0.55, 0.8));
+    result_.final_mesh = hybrid_mesh::refine_adaptively(result_.hierarchy, *reference_, adaptive, progress_.part(0.55, 0.8));
     watch_.stop();
   }
 
@@ -739,7 +750,7 @@ class Remesher {
     const TopologySummary t = summarize_topology(to_soup(mesh));
     DistanceOptions distance;
     if (!last) distance.samples = 30000;
-    const SurfaceDistance d = surface_distance(input_unit_, to_soup(mesh), distance, progress);
+    const SurfaceDistance d = reference_->distance(to_soup(mesh), distance, progress);
     if (last) final_distance_ = d;
     const LevelStretch s = level_stretch(result_.hierarchy, mesh);
     std::vector<double> sorted = s.stretch;
@@ -854,7 +865,7 @@ class Remesher {
   TopologySummary topology_;
   Placement placement_;
   WorkingSurface working_;
-  PolygonSoup input_unit_;
+  std::optional<DistanceReference> reference_;  // the input, of unit size
   SurfaceDistance final_distance_;
   Budget budget_;
   Finest finest_;

@@ -22,6 +22,16 @@ double fineness(const HybridMesh& hierarchy, int node, double u, double v, int f
   return std::ldexp(1.0, 2 * hierarchy.level(node));
 }
 
+// Is there any place in the node's square where a map of its own, or from above it, counts?
+bool counts_somewhere(const HybridMesh& hierarchy, int node, int finest) {
+  if (hierarchy.first_child(node) < 0 || hierarchy.level(node) >= finest) return true;
+  for (int k = 0; k < 4; ++k) {
+    const int child = hierarchy.first_child(node) + k;
+    if (hierarchy.is_active(child) && !hierarchy.map(child) && counts_somewhere(hierarchy, child, finest)) return true;
+  }
+  return false;
+}
+
 // The nodes whose maps count in the mesh of leaves up to a level.
 std::vector<int> map_owners(const HybridMesh& hierarchy, int finest) {
   std::vector<int> owners, stack = hierarchy.roots();
@@ -30,7 +40,7 @@ std::vector<int> map_owners(const HybridMesh& hierarchy, int finest) {
     const int n = stack.back();
     stack.pop_back();
     if (hierarchy.level(n) > finest || !hierarchy.is_active(n)) continue;
-    if (hierarchy.map(n)) owners.push_back(n);
+    if (hierarchy.map(n) && counts_somewhere(hierarchy, n, finest)) owners.push_back(n);
     if (hierarchy.first_child(n) >= 0)
       for (int k = 3; k >= 0; --k) stack.push_back(hierarchy.first_child(n) + k);
   }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
@@ -199,14 +200,32 @@ void check(const PolygonSoup& soup) {
 
 }  // namespace
 
-SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, const DistanceOptions& options, const Progress& progress) {
+class DistanceReference::Prepared {
+ public:
+  explicit Prepared(const PolygonSoup& soup)
+      : frame(frame_of(soup)), faces(place(soup, frame)), query(faces.points, faces.triangles) {
+    if (!faces.boundary.empty()) edges.emplace(faces.points, faces.boundary);
+  }
+
+  Frame frame;
+  Faces faces;
+  SurfaceDistanceQuery query;
+  std::optional<SurfaceDistanceQuery> edges;  // of the boundary
+};
+
+DistanceReference::DistanceReference(const PolygonSoup& surface) {
+  check(surface);
+  prepared_ = std::make_unique<const Prepared>(surface);
+}
+
+DistanceReference::~DistanceReference() = default;
+
+SurfaceDistance DistanceReference::distance(const PolygonSoup& other, const DistanceOptions& options, const Progress& progress) const {
   if (options.samples < 1) throw Error(ErrorCode::InvalidInput, "the number of samples must be positive, not " + std::to_string(options.samples));
-  check(a);
-  check(b);
-  const Frame frame = frame_of(a);
-  const Faces fa = place(a, frame), fb = place(b, frame);
+  check(other);
+  const Faces &fa = prepared_->faces, fb = place(other, prepared_->frame);
   progress(0.1);
-  const SurfaceDistanceQuery on_a(fa.points, fa.triangles), on_b(fb.points, fb.triangles);
+  const SurfaceDistanceQuery &on_a = prepared_->query, on_b(fb.points, fb.triangles);
   progress(0.2);
   const Sums ab = sample(fa, on_b, options, 0, progress);
   progress(0.45);
@@ -214,7 +233,7 @@ SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, con
   progress(0.7);
   const double n = static_cast<double>(options.samples);
   SurfaceDistance d;
-  d.diagonal = frame.diagonal;
+  d.diagonal = prepared_->frame.diagonal;
   d.l2_ab = std::sqrt(ab.squares / n);
   d.l2_ba = std::sqrt(ba.squares / n);
   d.l2 = std::max(d.l2_ab, d.l2_ba);
@@ -223,13 +242,17 @@ SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, con
   const HausdorffBounds bounds = hausdorff({fa.points, fa.triangles, fa.rim}, {fb.points, fb.triangles, fb.rim}, on_a, on_b, known, progress.part(0.7, 0.95));
   d.hausdorff = bounds.reached;
   d.hausdorff_bound = bounds.at_most;
-  if (!fa.boundary.empty() && !fb.boundary.empty()) {
+  if (prepared_->edges && !fb.boundary.empty()) {
     const std::vector<char> none;
-    const SurfaceDistanceQuery edges_of_a(fa.points, fa.boundary), edges_of_b(fb.points, fb.boundary);
+    const SurfaceDistanceQuery &edges_of_a = *prepared_->edges, edges_of_b(fb.points, fb.boundary);
     d.boundary_hausdorff = hausdorff({fa.points, fa.boundary, none}, {fb.points, fb.boundary, none}, edges_of_a, edges_of_b, 0, progress.part(0.95, 1)).reached;
   }
   progress(1);
   return d;
+}
+
+SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, const DistanceOptions& options, const Progress& progress) {
+  return DistanceReference(a).distance(b, options, progress);
 }
 
 }  // namespace hybrid_mesh

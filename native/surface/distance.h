@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "base/context.h"
 #include "surface/polygon_soup.h"
@@ -23,10 +24,25 @@ struct DistanceOptions {
   std::uint64_t seed = 1;
 };
 
-// The means are of area-weighted samples in both directions; the Hausdorff distances are found by branch and bound (see
-// one_sided_hausdorff.h), since samples miss the top of a thin maximum, 200,000 of them by up to a quarter.
-// In parallel; the result does not depend on the number of threads. Polygons are split by triangulate().
-// Throws Error{InvalidInput} if one of the surfaces has no area.
+// A surface that others are measured against. Holds a copy of what it needs; calls from several threads at once are safe.
+class DistanceReference {
+ public:
+  // Throws Error{InvalidInput} if the surface has no area.
+  explicit DistanceReference(const PolygonSoup& surface);
+  ~DistanceReference();
+
+  // The means are of area-weighted samples in both directions; the Hausdorff distances are found by branch and bound (see
+  // one_sided_hausdorff.h), since samples miss the top of a thin maximum, 200,000 of them by up to a quarter.
+  // In parallel; the result does not depend on the number of threads. Polygons are split by triangulate().
+  // Throws Error{InvalidInput} if the other surface has no area.
+  SurfaceDistance distance(const PolygonSoup& other, const DistanceOptions& options, const Progress& progress) const;
+
+ private:
+  class Prepared;
+  std::unique_ptr<const Prepared> prepared_;
+};
+
+// The same for one pair.
 SurfaceDistance surface_distance(const PolygonSoup& a, const PolygonSoup& b, const DistanceOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

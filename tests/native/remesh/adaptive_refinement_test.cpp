@@ -46,7 +46,7 @@ Landscape landscape(int columns, int rows) {
 
 QuadMesh refined(Landscape& l, const AdaptiveOptions& options) {
   Context context;
-  return refine_adaptively(l.hierarchy, l.surface, options, Progress(context));
+  return refine_adaptively(l.hierarchy, DistanceReference(l.surface), options, Progress(context));
 }
 
 QuadMesh refined_to(Landscape& l, std::int64_t vertices) {
@@ -197,7 +197,7 @@ TEST(AdaptiveRefinement, CanBeCancelled) {
   context.cancel();
   AdaptiveOptions options;
   options.vertices = 1000;
-  EXPECT_THROW(refine_adaptively(l.hierarchy, l.surface, options, Progress(context)), Error);
+  EXPECT_THROW(refine_adaptively(l.hierarchy, DistanceReference(l.surface), options, Progress(context)), Error);
 }
 
 RemeshResult remeshed(const PolygonSoup& soup, std::int64_t vertices, double error, FaceClosure faces) {
