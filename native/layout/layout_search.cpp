@@ -184,17 +184,28 @@ class LayoutSearch {
     }
     std::vector<char> poor(s.patch_count(), 0);
     for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->relayout || energy_[q] * all > options_->relayout * area[q] * s.patch_count();
-    std::vector<LayoutScript::EvenLayout> chosen;
     std::vector<char> wide = dilated(poor);
     // A region has a boundary: where all is poor, the best stays.
     if (std::find(wide.begin(), wide.end(), 0) == wide.end()) wide[std::min_element(energy_.begin(), energy_.end()) - energy_.begin()] = 0;
-    for (const PatchRegion& region : disks(std::move(wide))) {
-      double wanted = 0;
-      for (const int q : region.patches) wanted += area[q] / all * (options_->even_quads > 0 ? options_->even_quads : s.patch_count());
+    std::vector<PatchRegion> regions = disks(std::move(wide));
+    const auto share_of = [&](const PatchRegion& region) {
+      double sum = 0;
+      for (const int q : region.patches) sum += area[q];
+      return sum / all;
+    };
+    std::stable_sort(regions.begin(), regions.end(), [&](const PatchRegion& a, const PatchRegion& b) { return share_of(a) < share_of(b); });
+    const double even = options_->even_quads > 0 ? options_->even_quads : s.patch_count();
+    double count = s.patch_count();
+    std::vector<LayoutScript::EvenLayout> chosen;
+    for (const PatchRegion& region : regions) {
+      double wanted = share_of(region) * even;
+      // The largest region makes up for what the quads that stay are more or fewer than even ones, as far as its own can differ from these.
+      if (&region == &regions.back()) wanted = std::clamp(even - (count - static_cast<double>(region.patches.size())), 0.7 * wanted, 1.3 * wanted);
       wanted = std::max(wanted, 1.0);
       std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
       if (!edit) continue;
       chosen.push_back({edit->edit, wanted, outline_of(*edit, region)});
+      count += edit->edit.growth();
       drawn.push_back(std::move(*edit));
     }
     return chosen;

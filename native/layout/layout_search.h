@@ -20,7 +20,7 @@ struct LayoutSearchOptions {
   int rounds = 4;
   int trials = 80;         // a round
   double relayout = 0;     // regions of quads with more energy than this beyond an isometry's are laid out anew first, and edits tried there alone; 0: none, and everywhere
-  double even_quads = 0;   // ... with quads of the size of which the whole surface would have so many; 0: as many as there are
+  double even_quads = 0;   // ... so that there are about so many quads in all, as far as they can be of about the same size; 0: as many as there are
   std::vector<LayoutSearchOptions> finer;  // of the levels above the base
 };
 

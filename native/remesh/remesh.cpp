@@ -244,7 +244,9 @@ class Remesher {
     LayoutSearchOptions& last = search.finer.back();
     // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
     last.relayout = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
-    last.even_quads = quads_for_budget(quads);
+    const double size = quads_for_budget(quads);
+    last.even_quads = size - kRoom;
+    if (options_.refinement == Refinement::Uniform) last.quads = static_cast<int>(size);
     last.rounds = 1;
     last.trials = 30;
     return search;
@@ -253,15 +255,17 @@ class Remesher {
   // Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too few to choose from. Two levels with
   // operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice, and neither the distances nor the angles are better.
   static constexpr double kLeastQuads = 60, kEnoughQuads = 250;
+  // For one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
+  static constexpr double kRoom = 4;
 
   // Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
   static double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
 
-  // About so many quads, of which a whole number of levels makes a mesh of the size asked for.
+  // The number near `quads` of which a whole number of levels makes a mesh of the size asked for.
   double quads_for_budget(double quads) const {
     double size = static_cast<double>(budget_.vertices) - static_cast<double>(topology_.euler);
     while (size > 1.6 * quads) size /= 4;
-    return 0.98 * size;
+    return size;
   }
 
   void try_base(int attempt) {
@@ -278,8 +282,7 @@ class Remesher {
       if (base_options.size < 60) base_options.least = static_cast<int>(base_options.size);
     }
     base_options.seed = options_.seed + 1000003ull * (attempt + first_attempt_);
-    // Room for one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
-    if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= 4;
+    if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= kRoom;
     const BaseDomain base = make_base(origin);
     BaseMap map = map_to_base(working_.mesh, base, search_options(base, attempt), progress_.part(0.15, 0.5));
     origin.level = map.script.levels.front();
