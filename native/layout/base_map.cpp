@@ -36,7 +36,7 @@ LayoutSearchResult repeat_edits(CarriedMap map, const std::vector<LevelEdits>& e
   mapped.corners = map_patches(mapped.surface, progress.part(0, 0.2));
   map.charts = smooth(mapped, options, progress.part(0.2, 1));
   map.layout = std::move(mapped.surface);
-  LayoutSearchResult result{edits, {}, {}};
+  LayoutSearchResult result{{edits[0]}, {}, {}};
   result.stages.push_back({0, std::move(map)});
   return result;
 }
@@ -68,6 +68,7 @@ BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& bas
       LayoutSearchResult found = first ? search(std::move(map), part) : repeat_edits(std::move(map), edits, options, part);
       edits = found.edits;
       if (first) script = found.script;
+      script.levels.resize(edits.size());
       BaseMap out = carried(std::move(found), options, progress.part(0.8, 1));
       out.script = std::move(script);
       return out;
@@ -81,14 +82,14 @@ BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& bas
 }  // namespace
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
-  return map_coarse_to_fine(surface, base, options.vertices, !options.finer.empty(), options.map, progress,
+  return map_coarse_to_fine(surface, base, options.vertices, !options.finer.empty() && options.stretch == 0, options.map, progress,
                             [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
 }
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress) {
   GlobalMapOptions options;
   options.vertices_a_quad = script.levels.front().vertices_a_quad;
-  return map_coarse_to_fine(surface, base, script.levels.front().vertices, script.levels.size() > 1, options, progress,
+  return map_coarse_to_fine(surface, base, script.levels.front().vertices, false, options, progress,
                             [&](CarriedMap map, const Progress& part) { return repeat_search(std::move(map), script, part); });
 }
 

@@ -32,6 +32,8 @@ class LayoutSearch {
   LayoutSearchResult run(const LayoutSearchOptions& options, const Progress& progress) {
     const double parts = 2.0 + static_cast<double>(options.finer.size());
     options_ = &options;
+    map_options_ = options.map;
+    finer_ = !options.finer.empty();
     begin_level();
     mapped_.corners = map_patches(best_.layout, progress.part(0, 0.05));
     mapped_.surface = best_.layout;
@@ -39,17 +41,37 @@ class LayoutSearch {
     accept();
     improve(progress.part(1 / parts, 2 / parts));
     LayoutSearchResult result;
-    // Each at once: where a map cannot be carried back, further search is in vain.
-    const auto keep = [&](CarriedMap map, const Progress& part) {
-      if (!options.finer.empty()) map.carry(std::numeric_limits<double>::infinity(), options.map, part);
-      result.stages.push_back({static_cast<int>(best_edits_.size()) - 1, std::move(map)});
-    };
-    for (const LayoutSearchOptions& finer : options.finer) {
-      const double begin = static_cast<double>(best_edits_.size() + 1) / parts;
-      options_ = &finer;
-      if (result.stages.empty() || !best_edits_.back().empty()) keep(best_, progress.part(begin, begin));
+    const bool optional = !script_ && options.stretch > 0;
+    if (optional && !(largest_stretch(static_cast<int>(options.finer.size())) > options.stretch)) {
+      result.stages.push_back({0, best_});
+    } else {
       try {
-        best_.carry(finer.vertices, finer.map, progress.part(begin, begin + 0.2 / parts));
+        search_finer(result, options, progress.part(2 / parts, 1));
+      } catch (const Error& e) {
+        if (e.code() != ErrorCode::Internal || !optional) throw;
+        // The base alone does, too. If it is that which cannot be carried, the caller tries a finer surface.
+        while (result.stages.size() > 1) result.stages.pop_back();
+        if (result.stages.empty()) result.stages.push_back({0, best_});
+        best_edits_.resize(1);
+        made_.levels.resize(1);
+      }
+    }
+    result.edits = std::move(best_edits_);
+    result.script = std::move(made_);
+    return result;
+  }
+
+ private:
+  void search_finer(LayoutSearchResult& result, const LayoutSearchOptions& options, const Progress& progress) {
+    const auto parts = static_cast<double>(options.finer.size());
+    for (std::size_t i = 0; i < options.finer.size(); ++i) {
+      const LayoutSearchOptions& finer = options.finer[i];
+      const Progress part = progress.part(static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts);
+      // Each map at once: where one cannot be carried back, further search is in vain.
+      if (result.stages.empty() || !best_edits_.back().empty()) keep(result, part.part(0, 0.1));
+      options_ = &finer;
+      try {
+        best_.carry(finer.vertices, finer.map, part.part(0.1, 0.2));
       } catch (const Error& e) {
         if (e.code() != ErrorCode::Internal) throw;  // a coarser surface than wished does as well as it can
       }
@@ -58,16 +80,38 @@ class LayoutSearch {
       best_edits_.emplace_back();
       edits_ = best_edits_;
       begin_level();
-      if (script_ ? !scripted().even.empty() : finer.relayout > 0) relayout(progress);
-      improve(progress.part(begin + 0.2 / parts, begin + 1 / parts));
+      if (script_ ? !scripted().even.empty() : finer.even_quads > 0) relayout(part);
+      improve(part.part(0.2, 1));
     }
-    if (result.stages.empty() || !best_edits_.back().empty()) keep(std::move(best_), progress.part(1, 1));
-    result.edits = std::move(best_edits_);
-    result.script = std::move(made_);
-    return result;
+    if (result.stages.empty() || !best_edits_.back().empty()) keep(result, progress.part(1, 1));
   }
 
- private:
+  // Adds the present level's map to the result, on the surface itself if there are finer levels.
+  void keep(LayoutSearchResult& result, const Progress& progress) const {
+    CarriedMap map = best_;
+    if (finer_) map.carry(std::numeric_limits<double>::infinity(), map_options_, progress);
+    result.stages.push_back({static_cast<int>(best_edits_.size()) - 1, std::move(map)});
+  }
+
+  // Of the quads of a level so many above the present one: how many times the mean area the largest covers, by the faces whose middles lie in it.
+  double largest_stretch(int levels) const {
+    const ChartMesh& c = best_.charts;
+    const int cells = 1 << levels;
+    std::vector<double> on_surface(static_cast<std::size_t>(best_.layout.patch_count()) * cells * cells, 0), in_chart = on_surface;
+    for (int f = 0; f < c.mesh.face_count; ++f) {
+      if (!c.mesh.alive[f]) continue;
+      const Complex p = c.at(3 * f), q = c.at(3 * f + 1), r = c.at(3 * f + 2), middle = (p + q + r) / 3.0;
+      const auto cell = [&](double x) { return std::clamp(static_cast<int>(x * cells), 0, cells - 1); };
+      const std::size_t at = (static_cast<std::size_t>(c.chart[f]) * cells + cell(middle.real())) * cells + cell(middle.imag());
+      on_surface[at] += c.flat(f).area;
+      in_chart[at] += 0.5 * (std::conj(q - p) * (r - p)).imag();
+    }
+    double largest = 0;
+    for (std::size_t i = 0; i < in_chart.size(); ++i)
+      if (in_chart[i] > 0) largest = std::max(largest, on_surface[i] / in_chart[i]);
+    return largest;
+  }
+
   void begin_level() { made_.levels.push_back({options_->vertices, options_->map.vertices_a_quad, {}, {}}); }
   const LayoutScript::Level& scripted() const { return script_->levels[made_.levels.size() - 1]; }
 
@@ -183,7 +227,7 @@ class LayoutSearch {
       all += a;
     }
     std::vector<char> poor(s.patch_count(), 0);
-    for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->relayout || energy_[q] * all > options_->relayout * area[q] * s.patch_count();
+    for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->threshold || energy_[q] * all > options_->threshold * area[q] * s.patch_count();
     std::vector<char> wide = dilated(poor);
     // A region has a boundary: where all is poor, the best stays.
     if (std::find(wide.begin(), wide.end(), 0) == wide.end()) wide[std::min_element(energy_.begin(), energy_.end()) - energy_.begin()] = 0;
@@ -194,13 +238,12 @@ class LayoutSearch {
       return sum / all;
     };
     std::stable_sort(regions.begin(), regions.end(), [&](const PatchRegion& a, const PatchRegion& b) { return share_of(a) < share_of(b); });
-    const double even = options_->even_quads > 0 ? options_->even_quads : s.patch_count();
     double count = s.patch_count();
     std::vector<LayoutScript::EvenLayout> chosen;
     for (const PatchRegion& region : regions) {
-      double wanted = share_of(region) * even;
+      double wanted = share_of(region) * options_->even_quads;
       // The largest region makes up for what the quads that stay are more or fewer than even ones, as far as its own can differ from these.
-      if (&region == &regions.back()) wanted = std::clamp(even - (count - static_cast<double>(region.patches.size())), 0.7 * wanted, 1.3 * wanted);
+      if (&region == &regions.back()) wanted = std::clamp(options_->even_quads - (count - static_cast<double>(region.patches.size())), 0.7 * wanted, 1.3 * wanted);
       wanted = std::max(wanted, 1.0);
       std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
       if (!edit) continue;
@@ -254,6 +297,8 @@ class LayoutSearch {
   // Rounds of edits, and of smoothing after each, for as long as that gains.
   void improve(const Progress& progress) {
     if (script_) return repeat_rounds(progress);
+    const int now = best_.layout.patch_count();
+    most_ = now <= options_->quads ? options_->quads : now + now / 3;
     for (int round = 0; round < options_->rounds; ++round) {
       const Progress part = progress.part(static_cast<double>(round) / options_->rounds, (round + 1.0) / options_->rounds);
       try {
@@ -363,15 +408,15 @@ class LayoutSearch {
       Candidate c{region, edit};
       c.irregular = *irregular;
       for (const int q : region.patches) c.excess += energy_[q];
-      if (c.excess < options_->relayout * static_cast<double>(region.patches.size())) return;
+      if (c.excess < options_->threshold * static_cast<double>(region.patches.size())) return;
       found.push_back(std::move(c));
     };
-    const bool room = s.patch_count() < options_->quads;
+    const bool room = s.patch_count() < most_;
     const auto add_ring = [&](const std::vector<int>& patches) {
       if (!room) return;
       if (const auto region = make_region(s, patches))
         if (const auto edit = tower_edit(s, *region, 1))
-          if (s.patch_count() + edit->growth() <= options_->quads) add(*region, *edit);
+          if (s.patch_count() + edit->growth() <= most_) add(*region, *edit);
     };
     for (int q = 0; q < s.patch_count(); ++q) {
       add_ring({q});
@@ -414,7 +459,7 @@ class LayoutSearch {
       if (height < 2) continue;
       Candidate tall = found[i];
       tall.edit = *tower_edit(s, tall.region, height);
-      if (s.patch_count() + tall.edit.growth() > options_->quads) continue;
+      if (s.patch_count() + tall.edit.growth() > most_) continue;
       found.push_back(std::move(tall));
     }
     return found;
@@ -475,7 +520,7 @@ class LayoutSearch {
     int size = s.patch_count();
     for (const Candidate& c : candidates) {
       if (worth(c) <= 0.05) break;
-      if (size + c.edit.growth() > options_->quads) continue;
+      if (size + c.edit.growth() > most_) continue;
       const std::vector<int> patches = with_surroundings(c.region);
       if (std::any_of(patches.begin(), patches.end(), [&](int q) { return touched[q]; })) continue;
       for (const int q : patches) touched[q] = 1;
@@ -493,7 +538,10 @@ class LayoutSearch {
   std::optional<ChartMesh> fresh_;
   MappedSurface mapped_;           // cut along the best layout, or an edited one
   const LayoutSearchOptions* options_ = nullptr;  // of the present level
+  GlobalMapOptions map_options_;   // of the base
+  bool finer_ = false;             // are there finer levels
   std::vector<LevelEdits> best_edits_, edits_{1};
+  int most_ = 0;                   // quads that the layout may grow to
   double least_ = 0, excess_ = 0;  // energy of the best and of the fresh map beyond an isometry's, in quads of the present level
   double scale_ = 1;
   std::vector<double> energy_;    // per patch, beyond an isometry's

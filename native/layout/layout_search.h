@@ -14,13 +14,14 @@ namespace hybrid_mesh {
 struct LayoutSearchOptions {
   GlobalMapOptions map;
   double vertices = 0;     // of the coarse surface that is worked on
-  int quads = 0;           // the layout may grow up to so many
+  int quads = 0;           // the layout may grow up to so many; where it has more already, by a third
   double price = 0.1;      // energy that a further quad must save, in quads
   double irregular_price = 0.06;  // ... and a further irregular node
   int rounds = 4;
   int trials = 80;         // a round
-  double relayout = 0;     // regions of quads with more energy than this beyond an isometry's are laid out anew first, and edits tried there alone; 0: none, and everywhere
-  double even_quads = 0;   // ... so that there are about so many quads in all, as far as they can be of about the same size; 0: as many as there are
+  double threshold = 0;    // of a quad's energy beyond an isometry's, below which it is left as it is
+  double even_quads = 0;   // regions of quads above the threshold are laid out anew first, so that there are about so many in all, as far as the new ones can be of their size; 0: not
+  double stretch = 0;      // finer levels are worked on only where quads of the last one would cover so many times the mean area
   std::vector<LayoutSearchOptions> finer;  // of the levels above the base
 };
 

@@ -220,36 +220,57 @@ class Remesher {
     LayoutSearchOptions search;
     search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
     search.vertices = 30.0 * base.quads();
-    if (options_.base != BaseSize::Minimal) return search;
+    options_.base == BaseSize::Minimal ? search_from_few(search, base.quads(), attempt) : grow_towers(search, base);
+    return search;
+  }
+
+  void search_from_few(LayoutSearchOptions& search, int base_quads, int attempt) const {
     // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
-    if (base.quads() < 20) {
+    if (base_quads < 20) {
       search.rounds = 0;
-      search.map.vertices_a_quad = 1000.0 / base.quads();
+      search.map.vertices_a_quad = 1000.0 / base_quads;
     }
-    search.vertices = std::max(1500.0, 30.0 * base.quads());
+    search.vertices = std::max(1500.0, search.vertices);
     // Only disks can be laid out anew, and where there are handles disks are a small part.
-    if (options_.semi_regular || attempt >= 4 || topology_.genus > topology_.components) return search;
-    double quads = base.quads();
+    if (options_.semi_regular || attempt >= 4 || topology_.genus > topology_.components) return;
+    double quads = base_quads;
     while (quads < kEnoughQuads && static_cast<int>(search.finer.size()) != options_.levels) {
       quads *= 4;
-      LayoutSearchOptions level = search;
-      level.finer.clear();
-      level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
-      level.vertices = std::max(1500.0, (attempt == 1 ? 60 : 30) * quads);
-      level.quads = static_cast<int>(1.3 * quads);
-      level.rounds = 0;
-      search.finer.push_back(level);
+      search.finer.push_back(plain_level(quads, attempt == 1 ? 60 : 30));
     }
-    if (quads < kLeastQuads || search.finer.empty()) return search;
+    if (quads < kLeastQuads || search.finer.empty()) return;
     LayoutSearchOptions& last = search.finer.back();
     // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
-    last.relayout = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
     const double size = quads_for_budget(quads);
+    last.threshold = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
     last.even_quads = size - kRoom;
-    if (options_.refinement == Refinement::Uniform) last.quads = static_cast<int>(size);
+    last.quads = static_cast<int>(options_.refinement == Refinement::Uniform ? size : 1.3 * quads);
     last.rounds = 1;
     last.trials = 30;
-    return search;
+  }
+
+  // A fitted base has quads where the shape asks for them; what is far longer than wide grows skin two levels above, where it takes little of the budget. Not for adaptive meshes: they
+  // would begin with all quads of that level.
+  void grow_towers(LayoutSearchOptions& search, const BaseDomain& base) const {
+    constexpr int level = 2;
+    if (options_.semi_regular || options_.base == BaseSize::Given || options_.refinement != Refinement::Uniform || budget_.levels <= level) return;
+    const double cells = std::pow(4.0, level);
+    for (int j = 1; j <= level; ++j) search.finer.push_back(plain_level(base.quads() * std::pow(4.0, j), 30));
+    search.stretch = options_.stretch_threshold;
+    LayoutSearchOptions& last = search.finer.back();
+    last.threshold = excess_of_stretch(options_.stretch_threshold);
+    last.quads = static_cast<int>(cells * (budget_.base_size - budget_.boundary_side * base.boundary_sides()));
+    last.rounds = 2;
+    last.trials = 30;
+  }
+
+  // A level that is passed through: quadrisected, on so many vertices a quad.
+  static LayoutSearchOptions plain_level(double quads, double vertices) {
+    LayoutSearchOptions level;
+    level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
+    level.vertices = std::max(1500.0, vertices * quads);
+    level.rounds = 0;
+    return level;
   }
 
   // Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too few to choose from. Two levels with

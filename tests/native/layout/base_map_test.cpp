@@ -314,7 +314,7 @@ TEST(LayoutSearch, GrowsSkinOnFinerLevels) {
   finer.vertices = 3000;
   finer.quads = 130;
   options.finer = {finer, finer};
-  options.finer.back().relayout = 0.5;
+  options.finer.back().threshold = 0.5;
   options.finer.back().rounds = 2;
   const BaseMap without = [&] {
     LayoutSearchOptions plain = options;

@@ -154,6 +154,32 @@ TEST_P(RemeshKinds, GrowSkinWithinTheHierarchyOfACube) {
   }
 }
 
+TEST(Remesh, GrowsTowersOnAFittedBaseWhereTheStretchAsksForThem) {
+  const PolygonSoup soup = spiked_ball(40);
+  RemeshOptions options;
+  options.vertices = 2000;
+  options.levels = 3;  // so few base quads that they cannot follow both spikes
+  options.stretch_threshold = 1e3;
+  const RemeshResult plain = run(soup, options);
+  EXPECT_EQ(plain.hierarchy.operation_count(), 0);
+  const auto largest = [](const RemeshResult& r) { return r.report["levels"][2]["stretch"]["max"].get<double>(); };
+  options.stretch_threshold = 1.5;
+  ASSERT_GT(largest(plain), options.stretch_threshold);
+  const RemeshResult grown = run(soup, options);
+  EXPECT_TRUE(find_defects(grown.hierarchy).empty());
+  ASSERT_GT(grown.hierarchy.operation_count(), 0);
+  for (int i = 0; i < grown.hierarchy.operation_count(); ++i) EXPECT_EQ(grown.hierarchy.operation(i).repatch.level, 2);
+  EXPECT_LT(largest(grown), largest(plain));
+  EXPECT_EQ(grown.hierarchy.depth(), 3);
+  // The budget holds, and what was decided can be made again.
+  EXPECT_LE(grown.final_mesh.points.size(), 2000u);
+  RemeshOptions again = options;
+  again.plan = grown.plan;
+  EXPECT_EQ(encode_hierarchy(run(soup, again).hierarchy, "{}"), encode_hierarchy(grown.hierarchy, "{}"));
+  options.semi_regular = true;
+  EXPECT_EQ(run(soup, options).hierarchy.operation_count(), 0);
+}
+
 TEST(Remesh, LevelsAreExactWhenAskedFor) {
   RemeshOptions options;
   options.levels = 2;
