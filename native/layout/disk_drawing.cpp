@@ -113,18 +113,20 @@ class QuadDrawing {
     return gauges;
   }
 
-  // Tutte's embedding of the new quads' sides: every quad is convex.
-  std::vector<Vec2> drawn_nodes() const {
-    const int n = static_cast<int>(polygon_.size()), all = n + edit_.inner_nodes;
+  // Tutte's embedding of quads' sides in the polygon, whose corners are their first nodes: every quad is convex.
+  std::vector<Vec2> embedded(const std::vector<std::array<int, 4>>& quads, int inner_nodes) const {
+    const int n = static_cast<int>(polygon_.size()), all = n + inner_nodes;
+    std::vector<Vec2> nodes = polygon_;
+    if (inner_nodes == 0) return nodes;
     std::vector<std::vector<int>> beside(all);
-    for (const auto& quad : edit_.quads)
+    for (const auto& quad : quads)
       for (int i = 0; i < 4; ++i)
         if (quad[i] >= n) {
           beside[quad[i]].push_back(quad[(i + 1) % 4]);
           beside[quad[i]].push_back(quad[(i + 3) % 4]);
         }
     std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(edit_.inner_nodes, 2);
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(inner_nodes, 2);
     for (int k = n; k < all; ++k) {
       entries.emplace_back(k - n, k - n, static_cast<double>(beside[k].size()));
       for (const int w : beside[k]) {
@@ -134,27 +136,35 @@ class QuadDrawing {
           right.row(k - n) += polygon_[w].transpose();
       }
     }
-    Eigen::SparseMatrix<double> matrix(edit_.inner_nodes, edit_.inner_nodes);
+    Eigen::SparseMatrix<double> matrix(inner_nodes, inner_nodes);
     matrix.setFromTriplets(entries.begin(), entries.end());
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     const Eigen::MatrixXd at = solver.solve(right);
+    for (int k = 0; k < inner_nodes; ++k) nodes.push_back(at.row(k).transpose());
+    return nodes;
+  }
+
+  // Rings around the tip, and on top of the last one the region's own quads.
+  std::vector<Vec2> tower_nodes() {
+    const int n = static_cast<int>(polygon_.size()), rings = edit_.rings;
+    Vec2 centre(0, 0);
+    const std::vector<double> gauges = ring_gauges(centre);
     std::vector<Vec2> nodes = polygon_;
-    for (int k = 0; k < edit_.inner_nodes; ++k) nodes.push_back(at.row(k).transpose());
+    for (int k = 0; k < n * rings; ++k) nodes.push_back(Vec2(centre + gauges[k / n] * (polygon_[k % n] - centre)));
+    const int left = edit_.inner_nodes - n * rings;
+    if (left == 1) nodes.push_back(centre);
+    if (left <= 1) return nodes;
+    std::vector<std::array<int, 4>> top(edit_.quads.begin() + n * rings, edit_.quads.end());
+    for (auto& quad : top)
+      for (int& k : quad) k -= n * rings;
+    const std::vector<Vec2> flat = embedded(top, left);
+    for (int k = n; k < n + left; ++k) nodes.push_back(Vec2(centre + gauges.back() * (flat[k] - centre)));
     return nodes;
   }
 
   void place_nodes(double room) {
-    const int n = static_cast<int>(polygon_.size());
-    std::vector<Vec2> inner;
-    if (edit_.rings > 0) {
-      Vec2 centre(0, 0);
-      const std::vector<double> gauges = ring_gauges(centre);
-      for (int k = 0; k < edit_.inner_nodes; ++k) inner.push_back(k < n * edit_.rings ? Vec2(centre + gauges[k / n] * (polygon_[k % n] - centre)) : centre);
-    } else if (edit_.inner_nodes > 0) {
-      const std::vector<Vec2> nodes = drawn_nodes();
-      inner.assign(nodes.begin() + n, nodes.end());
-    }
-    for (const Vec2& p : inner) inner_vertex_.push_back(insert(p, room));
+    const std::vector<Vec2> nodes = edit_.rings > 0 ? tower_nodes() : embedded(edit_.quads, edit_.inner_nodes);
+    for (std::size_t k = polygon_.size(); k < nodes.size(); ++k) inner_vertex_.push_back(insert(nodes[k], room));
     connect_half_edges(disk());
   }
 

@@ -86,9 +86,8 @@ LayoutEdit chord_edit(const PatchRegion& region, int from) {
   return edit;
 }
 
-std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings) {
+LayoutEdit tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings) {
   const int n = static_cast<int>(region.corners.size());
-  if (region.inner_nodes.size() > 1) return std::nullopt;
   LayoutEdit edit;
   edit.patches = region.patches;
   edit.start = region.boundary[0];
@@ -96,11 +95,12 @@ std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchR
   edit.inner_nodes = n * rings + static_cast<int>(region.inner_nodes.size());
   for (int r = 0; r < rings; ++r)
     for (int k = 0; k < n; ++k) edit.quads.push_back({n * r + k, n * r + (k + 1) % n, n * (r + 1) + (k + 1) % n, n * (r + 1) + k});
+  const auto place = [](const std::vector<int>& nodes, int node) { return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin()); };
   for (const int q : region.patches) {
     std::array<int, 4> quad;
     for (int i = 0; i < 4; ++i) {
-      const auto at = std::find(region.corners.begin(), region.corners.end(), surface.nodes[q][i]);
-      quad[i] = n * rings + (at == region.corners.end() ? n : static_cast<int>(at - region.corners.begin()));
+      const int corner = place(region.corners, surface.nodes[q][i]);
+      quad[i] = n * rings + (corner < n ? corner : n + place(region.inner_nodes, surface.nodes[q][i]));
     }
     edit.quads.push_back(quad);
   }

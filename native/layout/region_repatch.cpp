@@ -90,9 +90,7 @@ LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, c
   } else if (pattern.kind == RegionPattern::Kind::Template) {
     edit = template_edit(region, pattern.quads);
   } else {
-    std::optional<LayoutEdit> tower = tower_edit(surface, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, region)));
-    if (!tower) throw Error(ErrorCode::InvalidInput, "no tower stands on its quads: it takes one, two neighbours, or all around a node");
-    edit = std::move(*tower);
+    edit = tower_edit(surface, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, region)));
   }
   if (const std::string defect = find_edit_defect(surface, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
   return edit;
