@@ -151,7 +151,8 @@ void bind_drawn_layout(py::module_& module) {
   using py::arg;
   module.def("make_layout", &make_layout_from_arrays, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
              "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces, quads and problems. A stroke is a dict of points (n, 3) and fit, 'tight' or "
-             "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise; quads says how many each face is filled with: 0 where it cannot be.");
+             "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise; quads says "
+             "how many each face is filled with, 0 where it cannot be.");
   module.def("layout_plan", &layout_plan, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
              "The same, and its faces, filled with quads, as the base domain of a plan: the entry plan is JSON text, empty if there are problems.");
 }

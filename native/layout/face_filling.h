@@ -16,8 +16,8 @@ struct FaceFillingOptions {
   std::set<std::pair<int, int>> joined;  // nodes, each pair in both orders, that must not be joined by a new side, besides those that curves join
 };
 
-// Quads for the faces of a layout, nodes 0, 1, ... being those at the starts of a face's sides: one for a face of four sides, as fill_disk() has them for one that is a disk with a larger even
-// number of sides, by the angles of the face at its nodes; none for other faces.
+// Quads for the faces of a layout, nodes 0, 1, ... being those at the starts of a face's sides: one for a face of four sides; by fill_disk() and the face's angles at its nodes for a disk
+// with a larger even number of sides; none for other faces.
 std::vector<DiskLayout> find_fillings(const PatchLayout& layout, const FaceFillingOptions& options = {});
 
 // Cuts the faces of a layout without problems along the sides of quads that fill them. The layout's nodes keep their numbers, and faces of four sides their order among the patches.

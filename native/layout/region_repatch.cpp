@@ -96,7 +96,8 @@ LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, c
   return edit;
 }
 
-// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every time.
+// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every
+// time.
 ChartMesh held_on_lines(ChartMesh charts) {
   const auto on_line = [](double x) { return x == std::round(x); };
   for (std::size_t v = 0; v < charts.uv.size(); ++v)
