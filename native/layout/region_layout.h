@@ -19,7 +19,8 @@ struct PatchRegion {
   std::vector<int> inner_nodes;
 };
 
-// The region made of some patches, its boundary beginning at `start`, a boundary side (patch -1: any). Nothing if they are no disk or their boundary meets a node twice.
+// The region made of some patches, its boundary beginning at `start`, a boundary side (patch -1: any). Nothing if they are no disk, their boundary meets a node twice, or
+// `start` is not on it.
 std::optional<PatchRegion> make_region(const PatchedSurface& surface, const std::vector<int>& patches, PatchSide start = {});
 
 // New quads for a region: a replacement of its patches that leaves its boundary as it is. It names patches and corners alone, so that the same edit applies to every surface with
@@ -38,8 +39,8 @@ struct LayoutEdit {
 LayoutEdit star_edit(const PatchRegion& region, int parity);
 // Two quads instead of two: the side between them joins corners `from` and `from` + 3 of six.
 LayoutEdit chord_edit(const PatchRegion& region, int from);
-// A cube tower: the region's quads shrunk, with rings of quads around them: skin for a feature that sticks out of the region. One quad, two neighbours, or the quads around a node.
-std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings);
+// A cube tower: the region's quads shrunk, with rings of quads around them: skin for a feature that sticks out of the region.
+LayoutEdit tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings);
 // The number of rings that makes a tower's quads about square: the depth of the region, from its boundary to the point farthest from it, over the mean length of its boundary sides.
 int tower_height(const PatchedSurface& surface, const PatchRegion& region);
 

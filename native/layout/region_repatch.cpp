@@ -2,9 +2,13 @@
 #include "layout/region_repatch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "layout/face_filling.h"
+#include "layout/region_pattern.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
 #include "parameterization/patch_gluing.h"
@@ -52,25 +56,53 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
   // Curves are drawn on a level, which is the farther from the surface the coarser it is.
   options.reach = kReach;
   DrawnLayout drawn = make_layout(disk, strokes, options, progress);
-  require_quads(drawn);
-  if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
-  const PatchLayout& layout = drawn.layout;
+  const std::vector<Vec3>& points = drawn.layout.mesh.points;
+  const int corners = static_cast<int>(region.corners.size());
+  std::vector<int> number;  // per node of the layout; new ones from `corners` on
+  FaceFillingOptions filling;
+  const std::vector<int> wanted = regular_quads(surface, region);
+  int inner_nodes = 0;
+  for (const int v : drawn.layout.nodes) {
+    const auto at = std::find(corner.begin(), corner.end(), points[v]);
+    number.push_back(at == corner.end() ? corners + inner_nodes++ : static_cast<int>(at - corner.begin()));
+    filling.quads_at.push_back(at == corner.end() ? 0 : wanted[at - corner.begin()]);
+  }
+  std::vector<int> node_at(corners, -1);
+  for (std::size_t n = 0; n < number.size(); ++n)
+    if (number[n] < corners) node_at[number[n]] = static_cast<int>(n);
+  for (const auto& [a, b] : joined_outside(surface, region)) filling.joined.insert({node_at[a], node_at[b]});
   DrawnEdit out;
+  out.piece = fill_faces(drawn, filling);
+  if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
+  for (int n = static_cast<int>(number.size()); n < out.piece.node_count; ++n) number.push_back(corners + inner_nodes++);
   out.edit.patches = region.patches;
   out.edit.start = region.boundary[0];
-  const int corners = static_cast<int>(region.corners.size());
-  std::vector<int> number;
-  for (const int v : layout.nodes) {
-    const auto at = std::find_if(options.boundary_nodes.begin(), options.boundary_nodes.end(), [&](int p) { return disk.points[p] == layout.mesh.points[v]; });
-    number.push_back(at == options.boundary_nodes.end() ? corners + out.edit.inner_nodes++ : static_cast<int>(at - options.boundary_nodes.begin()));
-  }
-  for (const PatchLayout::Face& face : layout.faces) {
-    std::array<int, 4> quad;
-    for (int i = 0; i < 4; ++i) quad[i] = number[layout.start(face.cycles[0][i])];
-    out.edit.quads.push_back(quad);
-  }
-  out.piece = to_patched_surface(layout);
+  out.edit.inner_nodes = inner_nodes;
+  for (const std::array<int, 4>& nodes : out.piece.nodes) out.edit.quads.push_back({number[nodes[0]], number[nodes[1]], number[nodes[2]], number[nodes[3]]});
   return out;
+}
+
+// New quads that need no curves.
+LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, const RegionPattern& pattern) {
+  LayoutEdit edit;
+  if (pattern.kind == RegionPattern::Kind::Automatic) {
+    edit = automatic_edit(surface, region);
+  } else if (pattern.kind == RegionPattern::Kind::Template) {
+    edit = template_edit(region, pattern.quads);
+  } else {
+    edit = tower_edit(surface, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, region)));
+  }
+  if (const std::string defect = find_edit_defect(surface, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
+  return edit;
+}
+
+// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every
+// time.
+ChartMesh held_on_lines(ChartMesh charts) {
+  const auto on_line = [](double x) { return x == std::round(x); };
+  for (std::size_t v = 0; v < charts.uv.size(); ++v)
+    if (charts.movable(static_cast<int>(v)) && (on_line(charts.uv[v].real()) || on_line(charts.uv[v].imag()))) charts.kind[v] = ChartMesh::Kind::Pinned;
+  return charts;
 }
 
 // The given patches and so many rings around them.
@@ -93,19 +125,26 @@ std::vector<int> with_rings(const PatchedSurface& s, const std::vector<int>& pat
 
 }  // namespace
 
-LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const DrawnRegion& drawn, const Progress& progress) {
-  ChartMesh rounded = map.charts;
+LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const RegionRepatch& repatch, const Progress& progress) {
+  ChartMesh rounded = held_on_lines(map.charts);
   std::vector<PatchMap> maps = extract_patch_maps(rounded, map.layout, surface.faces, progress.part(0, 0.2));
   MappedSurface mapped = glue_patch_maps(maps, map.layout, surface.faces);
-  const std::optional<PatchRegion> region = make_region(mapped.surface, drawn.patches);
-  if (!region) throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself");
-  DrawnEdit edit = draw(mapped.surface, *region, drawn.strokes, progress.part(0.2, 0.4));
-  const LayoutEdit made = edit.edit;
-  const LayoutChange change = apply_edit(mapped, std::move(edit));
+  const std::optional<PatchRegion> region = make_region(mapped.surface, repatch.patches, repatch.start);
+  if (!region) throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
+  LayoutEdit made;
+  LayoutChange change;
+  if (repatch.pattern.kind == RegionPattern::Kind::Drawn) {
+    DrawnEdit edit = draw(mapped.surface, *region, repatch.pattern.strokes, progress.part(0.2, 0.4));
+    made = edit.edit;
+    change = apply_edit(mapped, std::move(edit));
+  } else {
+    made = find_edit(mapped.surface, *region, repatch.pattern);
+    change = apply_edit(mapped, made);
+  }
   map_patches(mapped.surface, change.added, mapped.corners, progress.part(0.4, 0.5));
 
   // Relaxed with the rim held, so that the maps around it still fit.
-  const std::vector<int> relaxed = with_rings(mapped.surface, change.added, drawn.buffer_rings);
+  const std::vector<int> relaxed = with_rings(mapped.surface, change.added, repatch.buffer_rings);
   const PatchedPart part = part_of(mapped.surface, relaxed);
   std::vector<std::array<Vec2, 3>> corners;
   for (const int f : part.face) corners.push_back(mapped.corners[f]);

@@ -5,9 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "layout/boundary_tower.h"
 #include "layout/layout_search.h"
-#include "layout/drawn_layout.h"
 #include "layout/layout_transfer.h"
+#include "layout/region_repatch.h"
 #include "remesh/working_surface.h"
 
 namespace hybrid_mesh {
@@ -21,15 +22,19 @@ struct Plan {
     std::int64_t faces = 0;  // see make_working_surface()
     BaseDomainOptions base;
     LayoutScript::Level level;  // the base level's edits
+    std::optional<BoundaryTower> tower;  // instead of all but the surface: in the input's space
   };
-  // Quads of one level, laid out anew along drawn curves after all of that level's other operations; see DrawnRegion.
+  // Quads of one level, laid out anew after all of that level's other operations; see RegionRepatch.
   struct Region {
     int level = 0;
-    std::vector<std::string> quads;    // addresses
-    std::vector<DrawnStroke> strokes;  // in the input's space
+    std::vector<std::string> quads;  // addresses
+    RegionPattern pattern;           // its strokes in the input's space
+    std::string start_quad;          // the address of the quad whose side `start_side` begins at corner 0; empty: any
+    int start_side = 0;
     int buffer_rings = 1;
   };
   LayoutOutline base;                       // in the input's space
+  std::optional<BoundaryTower> tower;       // instead of the base, and then there are no levels: in the input's space
   std::optional<Origin> origin;
   std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
   std::vector<Region> regions;
@@ -45,6 +50,7 @@ class PlanLayout {
   const std::vector<std::string>& addresses() const { return address_; }  // per quad
   int find(const std::string& address) const;                             // -1: none
   void quadrisect();
+  void apply(const LayoutScript::Level& level);
   void apply(std::vector<LayoutEdit> edits);  // of one round: named by the layout before them. Throws Error{Internal} where there are no such quads
 
  private:
