@@ -13,4 +13,7 @@ inline constexpr double degenerate_height = 4 * std::numeric_limits<double>::eps
 // it its direction.
 inline constexpr double cancelled_normals = 1e-12;
 
+// Points on a surface of unit size that are nearer to each other are the same place.
+inline constexpr double same_place = 1e-9;
+
 }  // namespace hybrid_mesh::tolerance
