@@ -243,6 +243,30 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
   }
 }
 
+TEST(Plan, EditsOfAnotherBaseAreNotMadeOnThisOne) {
+  const PolygonSoup soup = ball(24);
+  const RemeshOptions options = options_of(BaseSize::Auto, Refinement::Uniform);
+  const RemeshResult first = run(soup, options);
+  const Json plan = Json::parse(first.plan);
+  ASSERT_FALSE(plan["base"]["origin"]["rounds"].empty());
+  ASSERT_FALSE(plan["base"]["origin"]["rounds"][0].empty());
+  const std::vector<std::function<void(Json&)>> mistakes = {
+      [](Json& edit) { edit["patches"][0] = 999999; },
+      [](Json& edit) { edit["start"][0] = 2147483640; },
+      [](Json& edit) { edit["quads"][0][0] = 1000000000; },
+      [](Json& edit) { edit["inner_nodes"] = 2147483647; },
+      [](Json& edit) { edit["rings"] = 1000000000; },
+      [](Json& edit) { edit["quads"].erase(0); },
+  };
+  for (const auto& spoil : mistakes) {
+    Json bad = plan;
+    spoil(bad["base"]["origin"]["rounds"][0][0]);
+    // It is laid out along the plan's lines instead.
+    const RemeshResult made = run(soup, options, bad.dump());
+    EXPECT_EQ(made.hierarchy.base_count(), first.hierarchy.base_count());
+  }
+}
+
 TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
   const RemeshResult made = run(spiked_ball(24), options_of(BaseSize::Minimal, Refinement::Uniform));
   const Json good = Json::parse(made.plan);
