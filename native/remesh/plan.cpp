@@ -183,6 +183,8 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   if (entry.has("start")) {
     const std::vector<Entry> s = entry.at("start").list(2);
     start = {quad(s[0]), s[1].index(4)};
+    const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
+    if (!inside(start.patch) || inside(layout.layout().neighbours[start.patch][start.side].patch)) entry.at("start").refuse("is no side of the quads' boundary");
   }
   const std::optional<PatchRegion> region = make_region(layout.layout(), patches, start);
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");

@@ -243,6 +243,23 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
   }
 }
 
+TEST(Plan, AnOperationBeginsOnTheBoundaryOfItsQuads) {
+  for (int side = 0; side < 4; ++side) {
+    Json plan = cube_plan();
+    const Json star = {{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 8}};
+    plan["levels"] = {{{"level", 1}, {"operations", {{{"kind", "repatch"}, {"quads", {"0.0", "0.1", "0.2", "0.3"}}, {"start", {"0.0", side}}, {"new_quads", star}}}}}};
+    std::string said;
+    try {
+      plan_from_json(plan.dump());
+    } catch (const Error& e) {
+      said = e.what();
+    }
+    // Sides 1 and 2 lead to the middle of the four, and from it.
+    EXPECT_EQ(said.find("operations[0].start") != std::string::npos, side == 1 || side == 2) << said;
+    EXPECT_EQ(said.empty(), side == 0 || side == 3) << said;
+  }
+}
+
 TEST(Plan, EditsOfAnotherBaseAreNotMadeOnThisOne) {
   const PolygonSoup soup = ball(24);
   const RemeshOptions options = options_of(BaseSize::Auto, Refinement::Uniform);
