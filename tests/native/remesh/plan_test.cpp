@@ -321,6 +321,8 @@ TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
       {operation, [&](Json& p) { p["levels"][at]["operations"][0]["quads"].erase(0); }},
       {operation + ".new_quads", [&](Json& p) { p["levels"][at]["operations"][0]["new_quads"].erase(0); }},
       {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 99; }},
+      // Billions of quads would have to have addresses before it is found that none of them is named.
+      {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 12; }},
   };
   for (const auto& [place, spoil] : mistakes) {
     Json bad = good;
