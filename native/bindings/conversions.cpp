@@ -78,6 +78,17 @@ PolygonSoup soup_from_arrays(const py::object& points_object, const py::object& 
   return soup;
 }
 
+PolygonSoup soup_from_faces(const py::object& points, const py::object& faces) {
+  const auto array = py::array::ensure(faces);
+  if (!array || array.ndim() != 2 || array.shape(1) < 3) {
+    PyErr_Clear();
+    refuse("faces must have the shape (m, 3)");
+  }
+  std::vector<std::int64_t> offsets;
+  for (py::ssize_t f = 0; f <= array.shape(0); ++f) offsets.push_back(f * array.shape(1));
+  return soup_from_arrays(points, to_array(offsets), array.attr("ravel")());
+}
+
 py::tuple soup_to_arrays(const PolygonSoup& soup) {
   return py::make_tuple(rows_to_array<double>(soup.points), to_array(soup.offsets), to_array(soup.indices));
 }

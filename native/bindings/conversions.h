@@ -19,6 +19,9 @@ namespace hybrid_mesh {
 // of its type, shape or values cannot be used.
 PolygonSoup soup_from_arrays(const pybind11::object& points, const pybind11::object& offsets, const pybind11::object& indices);
 
+// The same with faces of as many corners each, (m, corners) indices.
+PolygonSoup soup_from_faces(const pybind11::object& points, const pybind11::object& faces);
+
 // (points, offsets, indices)
 pybind11::tuple soup_to_arrays(const PolygonSoup& soup);
 

@@ -56,18 +56,6 @@ DrawnStroke stroke_from_dict(const py::handle& object, std::size_t number) {
   return stroke;
 }
 
-// Faces given as (m, n) indices, or as what numpy makes of them.
-PolygonSoup soup_from_faces(const py::object& points, const py::object& faces) {
-  const auto array = py::array::ensure(faces);
-  if (!array || array.ndim() != 2 || array.shape(1) < 3) {
-    PyErr_Clear();
-    refuse("faces must have the shape (m, 3)");
-  }
-  std::vector<std::int64_t> offsets;
-  for (py::ssize_t f = 0; f <= array.shape(0); ++f) offsets.push_back(f * array.shape(1));
-  return soup_from_arrays(points, to_array(offsets), array.attr("ravel")());
-}
-
 py::array_t<double> positions(const PatchLayout& layout, const std::vector<int>& points) {
   std::vector<Vec3> out;
   for (const int v : points) out.push_back(layout.mesh.points[v]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -30,6 +31,21 @@ class PythonHierarchy {
   auto locked(Function&& function) const {
     const std::lock_guard lock(shared_->mutex);
     return function(*shared_->mesh);
+  }
+
+  // Puts function(const HybridMesh&), which has the same nodes and perhaps more, in the hierarchy's place. If the function throws, nothing has changed.
+  template <typename Function>
+  void replace(Function&& function) {
+    const std::lock_guard lock(shared_->mutex);
+    auto mesh = std::make_shared<const HybridMesh>(function(*shared_->mesh));
+    std::vector<int> plan_root = shared_->plan_root;
+    if (!plan_root.empty()) {
+      int next = *std::max_element(plan_root.begin(), plan_root.end()) + 1;
+      for (int node = static_cast<int>(plan_root.size()); node < mesh->node_count(); ++node) plan_root.push_back(mesh->is_root(node) ? next++ : -1);
+    }
+    shared_->mesh = std::move(mesh);
+    shared_->plan_root = std::move(plan_root);
+    shared_->sources.reset();
   }
 
   AnnotatedMesh annotated(QuadMesh mesh) const {

@@ -158,6 +158,7 @@ py::dict to_dict(const AnnotatedMesh& annotated) {
   result["indices"] = to_array(annotated.mesh.indices);
   result["stretch"] = to_array(annotated.stretch);
   result["anisotropy"] = to_array(annotated.anisotropy);
+  result["quad"] = to_array(annotated.mesh.node);
   result["patch"] = to_array(annotated.mesh.root);
   result["root"] = to_array(annotated.root);
   result["path"] = to_array(annotated.path);

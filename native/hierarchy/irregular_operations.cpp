@@ -50,10 +50,10 @@ std::string find_node_defect(const HybridMesh& mesh, const std::vector<int>& nod
 }
 
 // Counts the quads around a region's corners that are not of the region. A coarser leaf counts as if it were refined.
-void look_outside(const HybridMesh& mesh, const std::unordered_map<HalfEdge, SideLink>& sides, DiskRegion& region) {
+void look_outside(const HybridMesh& mesh, DiskRegion& region) {
   const std::set<int> inside(region.nodes.begin(), region.nodes.end());
   for (std::size_t k = 0; k < region.boundary.size(); ++k) {
-    const SideLink at = sides.at(region.boundary[k]);
+    const SideLink at = region.sides[k];
     const VertexId vertex = region.corners[k];
     int outside = 0;
     bool open = false;
@@ -115,6 +115,7 @@ DiskRegion find_disk_region(const HybridMesh& mesh, const std::vector<int>& node
   }
   for (HalfEdge h = first;;) {
     region.boundary.push_back(h);
+    region.sides.push_back(sides.at(h));
     region.corners.push_back(mesh.from(h));
     const auto next = leaving.find(mesh.to(h));
     if (next == leaving.end() || region.boundary.size() > leaving.size()) return refuse("the boundary of the quads is not closed");
@@ -128,7 +129,7 @@ DiskRegion find_disk_region(const HybridMesh& mesh, const std::vector<int>& node
       if (vertices.insert(mesh.corner(n, i)).second && !leaving.count(mesh.corner(n, i))) region.inner.push_back(mesh.corner(n, i));
   const int edges = static_cast<int>(4 * nodes.size() + region.boundary.size()) / 2;
   if (static_cast<int>(vertices.size()) - edges + static_cast<int>(nodes.size()) != 1) return refuse("the quads form no disk");
-  look_outside(mesh, sides, region);
+  look_outside(mesh, region);
   return region;
 }
 
@@ -183,7 +184,11 @@ OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, 
     repatch.quads.push_back(quad);
     repatch.sides.push_back(sides);
   }
-  return {repatch, ""};
+  std::vector<VertexPlace> places;
+  for (int ring = 1; ring <= count; ++ring)
+    for (VertexId corner : region.corners) places.push_back({{{corner, 1.0}}, static_cast<double>(ring)});
+  for (VertexId inner : region.inner) places.push_back({{{inner, 1.0}}, static_cast<double>(count)});
+  return {repatch, "", places};
 }
 
 OperationDraft open_boundary(const HybridMesh& mesh, const std::vector<int>& nodes) {
@@ -252,8 +257,18 @@ struct Circle {
 
 struct Tube {
   std::vector<std::array<int, 4>> quads;
+  std::vector<std::vector<std::pair<int, double>>> means;  // #new vertices: of the outer circles' corners, with weights
   double cost = 0;
 };
+
+// Adds `weight` times the point that divides a circle's corners, at equal distances from each other, in the ratio `turn` : 1 - turn.
+void add_point_of(const Circle& circle, double turn, double weight, std::vector<std::pair<int, double>>& mean) {
+  const double at = turn * static_cast<double>(circle.corners.size());
+  const auto k = static_cast<std::size_t>(at);
+  const double beyond = at - static_cast<double>(k);
+  mean.emplace_back(circle.corners[k % circle.corners.size()], weight * (1 - beyond));
+  if (beyond > 0) mean.emplace_back(circle.corners[(k + 1) % circle.corners.size()], weight * beyond);
+}
 
 // How far a vertex of so many quads is from a regular one; more than six or fewer than three weigh more than any number of other ones.
 double irregularity(int quads, bool on_boundary) {
@@ -316,19 +331,26 @@ Tube make_ring(Circle& large, Circle& small) {
   return ring;
 }
 
-// A tube of `rings` rings from circle `a` to circle `b`, the latter in the direction of the first; new vertices are numbered from `first_new`.
-Tube make_tube(Circle a, Circle b, int rings, int first_new) {
-  const int m = static_cast<int>(a.corners.size()), n = static_cast<int>(b.corners.size());
+// A tube of `rings` rings from circle `start` to circle `end`, the latter in the direction of the first; new vertices are numbered from `first_new`.
+Tube make_tube(const Circle& start, const Circle& end, int rings, int first_new) {
+  Circle a = start;
+  const int m = static_cast<int>(start.corners.size()), n = static_cast<int>(end.corners.size());
   Tube tube;
   for (int r = 1; r <= rings; ++r) {
     Circle next;
     if (r == rings) {
-      next = b;
+      next = end;
     } else {
       // Sizes between the two in equal ratios, even or odd as they are.
-      const double wanted = m * std::pow(static_cast<double>(n) / m, static_cast<double>(r) / rings);
+      const double along = static_cast<double>(r) / rings;
+      const double wanted = m * std::pow(static_cast<double>(n) / m, along);
       const int size = n + 2 * static_cast<int>(std::lround((wanted - n) / 2));
-      for (int k = 0; k < size; ++k) next.corners.push_back(first_new++);
+      for (int k = 0; k < size; ++k) {
+        next.corners.push_back(first_new++);
+        auto& mean = tube.means.emplace_back();
+        add_point_of(start, static_cast<double>(k) / size, 1 - along, mean);
+        add_point_of(end, static_cast<double>(k) / size, along, mean);
+      }
       next.quads.assign(size, 2);  // those of the ring to come
       next.on_boundary.assign(size, 0);
     }
@@ -438,7 +460,12 @@ OperationDraft connect(const HybridMesh& mesh, const std::vector<int>& region_a,
     repatch.quads.push_back(quad);
     repatch.sides.push_back(links);
   }
-  return {repatch, ""};
+  std::vector<VertexPlace> places;
+  for (const auto& mean : tube.means) {
+    VertexPlace& place = places.emplace_back();
+    for (const auto& [corner, weight] : mean) place.mean.emplace_back(repatch.boundary[corner], weight);
+  }
+  return {repatch, "", places};
 }
 
 }  // namespace hybrid_mesh

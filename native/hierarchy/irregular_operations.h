@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hierarchy/hybrid_mesh.h"
@@ -14,6 +15,7 @@ struct DiskRegion {
   int level = 0;
   std::vector<int> nodes;             // in the order given
   std::vector<HalfEdge> boundary;     // counter-clockwise
+  std::vector<SideLink> sides;        // the same, as sides of the nodes
   std::vector<VertexId> corners;      // where each boundary half-edge starts
   std::vector<VertexId> inner;        // the other vertices
   std::vector<int> outside;           // per corner: quads of the region's level around it that are not of the region
@@ -27,13 +29,21 @@ DiskRegion find_disk_region(const HybridMesh& mesh, const std::vector<int>& node
 // For each corner of a region the number of quads inside that makes it regular: four around it with those outside, two on the mesh's boundary; at least one.
 std::vector<int> regular_quads(const DiskRegion& region);
 
+// Where a new vertex of an operation belongs, whatever the positions of the others: at a weighted mean of vertices, raised along the normal of the removed quads.
+struct VertexPlace {
+  std::vector<std::pair<VertexId, double>> mean;  // weights, 1 together
+  double rise = 0;                                // in mean side lengths of the removed quads
+};
+
 // What a builder makes: an operation, or in words why there is none. HybridMesh::apply looks at the rest of the mesh, too, and may still refuse it.
 struct OperationDraft {
   Repatch repatch;
   std::string reason;
+  std::vector<VertexPlace> places{};  // #new vertices; empty: every one belongs at the mean of its neighbours
 };
 
-// `count` rings of quads grow on the region's boundary, and a copy of the region closes them: a cube for one quad and one ring, else a tower.
+// `count` rings of quads grow on the region's boundary, and a copy of the region closes them: a cube for one quad and one ring, else a tower. A ring is as high as the region's
+// sides are long.
 OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, int count);
 
 // Two disks are removed and their boundaries joined by a tube. The first boundary side of `region_a` faces that of `region_b` with the number `turn` (any integer; modulo

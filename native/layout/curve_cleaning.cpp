@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/tolerances.h"
 #include "layout/patch_layout.h"
+#include "layout/surface_paths.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -54,9 +56,8 @@ class CurveCleaning {
     const auto beside = [&](const std::vector<Vec3>& points, const std::vector<Vec3>& line) {
       return std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
         for (std::size_t i = 1; i < line.size(); ++i) {
-          const Vec3 along = line[i] - line[i - 1];
-          const double size = along.squaredNorm(), t = size > 0 ? std::clamp((p - line[i - 1]).dot(along) / size, 0.0, 1.0) : 0;
-          if ((p - line[i - 1] - t * along).norm() < 0.5 * options_.snap) return true;
+          const double t = nearest_on_segment(p, line[i - 1], line[i]);
+          if ((p - line[i - 1] - t * (line[i] - line[i - 1])).norm() < 0.5 * options_.snap) return true;
         }
         return false;
       });
@@ -74,7 +75,7 @@ class CurveCleaning {
     std::sort(shortest.begin(), shortest.end());
     for (const auto& [length, c] : shortest) {
       const SurfaceCurves::Curve curve = curves_.curve(c);
-      if (!curve.alive || curve.start == curve.end || curves_.length(c) > length * 1.5 + 1e-9) continue;
+      if (!curve.alive || curve.start == curve.end || curves_.length(c) > length * 1.5 + tolerance::same_place) continue;
       const auto weight = [&](int x) { return std::tuple(rank(x), curves_.degree(x), -x); };
       const int v = weight(curve.start) < weight(curve.end) ? curve.start : curve.end;
       if (rank(v) > 0 || moved_[v] + length > 2 * options_.snap) continue;

@@ -8,6 +8,8 @@
 #include <limits>
 #include <map>
 
+#include "layout/surface_paths.h"
+
 namespace hybrid_mesh {
 namespace {
 
@@ -35,9 +37,8 @@ double CurveSearch::price(const Vec3& from, const Vec3& to) const {
   if (guide_.empty()) return length;
   double nearest = kFar * kFar;
   for (std::size_t i = 1; i < guide_.size(); ++i) {
-    const Vec3 along = guide_[i] - guide_[i - 1];
-    const double size = along.squaredNorm(), t = size > 0 ? std::clamp((to - guide_[i - 1]).dot(along) / size, 0.0, 1.0) : 0;
-    nearest = std::min(nearest, (to - guide_[i - 1] - t * along).squaredNorm());
+    const double t = nearest_on_segment(to, guide_[i - 1], guide_[i]);
+    nearest = std::min(nearest, (to - guide_[i - 1] - t * (guide_[i] - guide_[i - 1])).squaredNorm());
   }
   return length * (1 + kDetourCost * std::sqrt(nearest) / kFar);
 }

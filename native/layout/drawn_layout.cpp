@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/tolerances.h"
 #include "layout/boundary_corners.h"
 #include "layout/curve_cleaning.h"
 #include "layout/curve_tightening.h"
@@ -161,9 +162,8 @@ class LayoutMaker {
         double best = kInfinity;
         for (const int a : {i - 1, i}) {
           if (a < 0 || a + 1 >= static_cast<int>(other.points.size())) continue;
-          const Vec3 from = other.points[a].at, along = other.points[a + 1].at - from;
-          const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-          best = std::min(best, (p - from - t * along).norm());
+          const Vec3 &from = other.points[a].at, &to = other.points[a + 1].at;
+          best = std::min(best, (p - from - nearest_on_segment(p, from, to) * (to - from)).norm());
         }
         return best;
       };
@@ -231,7 +231,7 @@ class LayoutMaker {
 
   const FacePoint& end_of(int path, int end) const { return end == 0 ? paths_[path].points.front() : paths_[path].points.back(); }
 
-  bool near_on_surface(const FacePoint& a, const FacePoint& b) { return (a.at - b.at).norm() < 1e-9 || paths_on_.join(a, b, 3 * snap_ + 2 * edge_length()).has_value(); }
+  bool near_on_surface(const FacePoint& a, const FacePoint& b) { return (a.at - b.at).norm() < tolerance::same_place || paths_on_.join(a, b, 3 * snap_ + 2 * edge_length()).has_value(); }
 
   // Ends that are near each other, or near a node of the boundary, become one junction: the closest first, as long as it stays small.
   void join_ends() {
@@ -323,7 +323,7 @@ class LayoutMaker {
         for (const int a : {i - 1, i}) {
           if (a < 0 || a + 1 >= static_cast<int>(path.points.size())) continue;
           const Vec3 from = path.points[a].at, along = path.points[a + 1].at - from;
-          const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0), s = path.at[a] + t * along.norm();
+          const double t = nearest_on_segment(p, from, path.points[a + 1].at), s = path.at[a] + t * along.norm();
           const double d = (p - from - t * along).norm();
           if (d > snap_ || !(d < best)) continue;
           if (path.junction[0] == number && s < 3 * snap_) continue;

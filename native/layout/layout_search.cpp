@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <set>
@@ -23,6 +24,31 @@ struct Candidate {
   double excess = 0;  // energy of the region's patches beyond an isometry's
   double gain = 0;    // energy that the edit saves
 };
+
+// Throws Error{Internal} for an edit that is none of this layout's: a script may have been made for another one.
+void require_fit(const PatchedSurface& s, const LayoutEdit& edit) {
+  const auto fails = [] [[noreturn]] { throw Error(ErrorCode::Internal, "an edit does not fit its layout"); };
+  const std::set<int> patches(edit.patches.begin(), edit.patches.end());
+  if (patches.empty() || *patches.begin() < 0 || *patches.rbegin() >= s.patch_count() || !patches.count(edit.start.patch)) fails();
+  if (patches.count(s.neighbours[edit.start.patch][edit.start.side].patch)) fails();
+  const std::optional<PatchRegion> region = make_region(s, edit.patches, edit.start);
+  if (!region) fails();
+  const std::int64_t corners = static_cast<std::int64_t>(region->corners.size()), nodes = corners + edit.inner_nodes;
+  if (edit.rings < 0 || corners * edit.rings > edit.inner_nodes) fails();
+  std::set<int> used;
+  std::set<std::pair<int, int>> sides;
+  for (const auto& quad : edit.quads)
+    for (int i = 0; i < 4; ++i) {
+      const int a = quad[i], b = quad[(i + 1) % 4];
+      if (a < 0 || a >= nodes || a == b || !sides.insert({a, b}).second) fails();
+      used.insert(a);
+    }
+  if (static_cast<std::int64_t>(used.size()) != nodes) fails();
+  for (int k = 0; k < corners; ++k)
+    if (!sides.count({k, static_cast<int>((k + 1) % corners)})) fails();
+  for (const auto& [a, b] : sides)
+    if ((a < corners && b == (a + 1) % corners) == (sides.count({b, a}) > 0)) fails();
+}
 
 class LayoutSearch {
  public:
@@ -257,6 +283,7 @@ class LayoutSearch {
   // The same quads as a script has them, along the same lines if this is the surface that it was made on; else their lines are left to the map.
   std::vector<LayoutScript::EvenLayout> repeat_even(std::vector<DrawnEdit>& drawn, const Progress& progress) const {
     for (const LayoutScript::EvenLayout& even : scripted().even) {
+      require_fit(mapped_.surface, even.edit);
       DrawnEdit edit{even.edit, {}};
       const std::optional<PatchRegion> region = make_region(mapped_.surface, even.edit.patches, even.edit.start);
       if (!region) throw Error(ErrorCode::Internal, "the quads of an operation are no disk");
@@ -335,6 +362,7 @@ class LayoutSearch {
   // Edits that do not shrink leave other patches' numbers alone.
   void apply(const std::vector<LayoutEdit>& edits, const Progress& progress) {
     for (const LayoutEdit& edit : edits) {
+      if (script_) require_fit(mapped_.surface, edit);
       map_patches(mapped_.surface, apply_edit(mapped_, edit).added, mapped_.corners, progress.part(0.6, 0.6));
       edits_.back().push_back(edit);
     }

@@ -244,6 +244,8 @@ std::vector<LayoutProblem> find_problems(const PatchLayout& layout) {
       problems.push_back({Kind::Dangling, "a curve ends where no other does", {layout.mesh.points[layout.nodes[node]]}, curve.stroke, -1});
     }
   }
+  std::vector<int> triangle(layout.faces.size(), -1);  // the first of each face
+  for (std::size_t t = layout.face.size(); t-- > 0;) triangle[layout.face[t]] = static_cast<int>(t);
   for (int f = 0; f < static_cast<int>(layout.faces.size()); ++f) {
     const PatchLayout::Face& face = layout.faces[f];
     std::vector<Vec3> rim;
@@ -255,8 +257,7 @@ std::vector<LayoutProblem> find_problems(const PatchLayout& layout) {
       }
     const int rims = static_cast<int>(face.cycles.size()), sides = face.side_count();
     if (rims == 0) {
-      const auto first = std::find(layout.face.begin(), layout.face.end(), f) - layout.face.begin();
-      problems.push_back({Kind::Uncovered, "a component of the surface has no curves", {layout.mesh.points[layout.mesh.faces[first][0]]}, -1, f});
+      problems.push_back({Kind::Uncovered, "a component of the surface has no curves", {layout.mesh.points[layout.mesh.faces[triangle[f]][0]]}, -1, f});
     } else if (!face.is_disk()) {
       const int handles = (2 - rims - face.euler) / 2;
       std::string message = rims == 2 && handles == 0 ? "a face is a ring" : "a face is no disk";

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "base/tolerances.h"
+
 namespace hybrid_mesh {
 namespace {
 
 constexpr int kMostSamples = 50000;  // a stroke
 constexpr double kDensest = 0.2;     // of a step
+constexpr std::size_t kMostPieces = 100;  // of a stroke that leaves the surface and comes back: each would be a curve of its own
 
 bool is_finite(const Vec3& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); }
 
@@ -85,7 +89,7 @@ std::vector<StrokeProjection::Sample> StrokeProjection::samples(const std::vecto
     if (!out.empty()) {
       // Closest points jump where a stroke is as near to another part of the surface. The part where it is now keeps it, unless that is clearly farther.
       const Sample& before = out.back();
-      const bool jumps = (s.on_surface - before.on_surface).norm() > 3 * (p - before.drawn).norm() + 1e-9 || normal(s.face).dot(normal(before.face)) < 0;
+      const bool jumps = (s.on_surface - before.on_surface).norm() > 3 * (p - before.drawn).norm() + tolerance::same_place || normal(s.face).dot(normal(before.face)) < 0;
       if (jumps) {
         const Sample near = nearby(p, before);
         if (near.distance <= 1.5 * s.distance + 0.5 * step) s = near;
@@ -164,10 +168,13 @@ std::vector<ProjectedStroke> StrokeProjection::operator()(int number, const std:
     pieces.push_back({std::max(i - 1, 0), std::min(last + 1, count - 1)});
     i = last + 1;
   }
-  if (pieces.empty()) {
+  if (pieces.empty() || pieces.size() > kMostPieces) {
     std::vector<Vec3> line;
     for (const Sample& s : all) line.push_back(s.on_surface);
-    problems.push_back({Kind::Overlap, "a stroke runs along the boundary, which is a side already", line, number, -1});
+    if (pieces.empty())
+      problems.push_back({Kind::Overlap, "a stroke runs along the boundary, which is a side already", line, number, -1});
+    else
+      problems.push_back({Kind::Unusable, "a stroke leaves the surface and comes back too often", line, number, -1});
     return out;
   }
   for (const auto& [first, last] : pieces) {
@@ -175,7 +182,7 @@ std::vector<ProjectedStroke> StrokeProjection::operator()(int number, const std:
     piece.stroke = number;
     std::vector<Vec3> line;
     for (int k = first; k <= last; ++k) {
-      if (!line.empty() && (all[k].on_surface - line.back()).norm() < 1e-9) continue;
+      if (!line.empty() && (all[k].on_surface - line.back()).norm() < tolerance::same_place) continue;
       line.push_back(all[k].on_surface);
       piece.points.push_back({all[k].face, all[k].on_surface});
     }

@@ -277,8 +277,12 @@ void SurfaceCurves::simplify_all(std::vector<int> curves) {
     for (const int c : curves)
       if (curves_[c].alive) simplify(c);
   }
+  std::vector<int> edges;
   for (const int c : curves)
-    for (int n = curves_[c].first; n >= 0; n = crossings_[n].next) spread(crossings_[n].edge);
+    for (int n = curves_[c].first; n >= 0; n = crossings_[n].next) edges.push_back(crossings_[n].edge);
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (const int e : edges) spread(e);
 }
 
 // --- geometry ----------------------------------------------------------------------------------------------------

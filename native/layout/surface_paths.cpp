@@ -11,6 +11,12 @@
 
 namespace hybrid_mesh {
 
+double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double size = along.squaredNorm();
+  return size > 0 ? std::clamp((p - a).dot(along) / size, 0.0, 1.0) : 0;
+}
+
 double nearest_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners, std::array<double, 3>& weights) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double area = normal.squaredNorm();
@@ -28,9 +34,7 @@ double nearest_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners, st
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    const Vec3 along = corners[j] - corners[i];
-    const double length = along.squaredNorm(), t = length > 0 ? std::clamp((p - corners[i]).dot(along) / length, 0.0, 1.0) : 0.0;
-    const double d = (p - (corners[i] + t * along)).squaredNorm();
+    const double t = nearest_on_segment(p, corners[i], corners[j]), d = (p - (corners[i] + t * (corners[j] - corners[i]))).squaredNorm();
     if (!(d < best)) continue;
     best = d;
     weights = {0, 0, 0};

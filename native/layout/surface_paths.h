@@ -14,6 +14,8 @@ struct FacePoint {
   Vec3 at = Vec3::Zero();
 };
 
+// The point of a segment nearest to p, as the fraction of the way from a to b.
+double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b);
 // The point of a triangle nearest to p, as weights of its corners, none negative. Returns the squared distance.
 double nearest_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners, std::array<double, 3>& weights);
 

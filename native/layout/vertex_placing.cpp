@@ -71,9 +71,8 @@ int VertexPlacing::nearest_edge(const Vec3& p, double most, int loop, double& fr
   for (const BoundaryEdge& e : boundary_) {
     if (loop >= 0 && e.loop != loop) continue;
     const int h = curves_.half_edge(e.edge);
-    const Vec3 from = curves_.points()[mesh.from(h)], along = curves_.points()[mesh.to(h)] - from;
-    const double size = along.squaredNorm(), t = size > 0 ? std::clamp((p - from).dot(along) / size, 0.0, 1.0) : 0;
-    const double d = (p - from - t * along).squaredNorm();
+    const Vec3 &from = curves_.points()[mesh.from(h)], &to = curves_.points()[mesh.to(h)];
+    const double t = nearest_on_segment(p, from, to), d = (p - from - t * (to - from)).squaredNorm();
     if (!(d <= best) || (d == best && found >= 0)) continue;
     best = d;
     found = h;

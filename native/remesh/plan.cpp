@@ -23,6 +23,7 @@ constexpr int kVersion = 1;
 constexpr int kMostLevels = 12;
 constexpr int kMostCubes = 1000;  // of a tower
 constexpr const char* kAutomatic = "automatic";
+constexpr std::int64_t kMostQuads = std::int64_t{1} << 22;  // of a level with operations
 
 // A value of the plan and its place in it, for messages.
 class Entry {
@@ -209,6 +210,8 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   if (entry.has("start")) {
     const std::vector<Entry> s = entry.at("start").list(2);
     start = {quad(s[0]), s[1].index(4)};
+    const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
+    if (!inside(start.patch) || inside(layout.layout().neighbours[start.patch][start.side].patch)) entry.at("start").refuse("is no side of the quads' boundary");
   }
   const std::optional<PatchRegion> region = make_region(layout.layout(), patches, start);
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
@@ -348,6 +351,7 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
     e.only({"level", "vertices", "vertices_a_quad", "operations"});
     const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, kMostLevels));
     while (levels.size() < level) {
+      if (4 * static_cast<std::int64_t>(layout.addresses().size()) > kMostQuads) e.at("level").refuse("would have more than " + std::to_string(kMostQuads) + " quads");
       levels.emplace_back();
       layout.quadrisect();
     }

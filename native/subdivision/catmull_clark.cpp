@@ -31,15 +31,6 @@ void choose_operations(HybridMesh& hierarchy, std::vector<bool> wanted) {
   if (!reason.empty()) refuse("the chosen operations cannot be applied together: " + reason);
 }
 
-void refine_to(HybridMesh& hierarchy, int level) {
-  double quads = 0;
-  for (const int leaf : hierarchy.leaves()) quads += std::ldexp(1.0, 2 * std::max(0, level - hierarchy.level(leaf)));
-  if (quads > static_cast<double>(max_subdivided_quads))
-    throw Error(ErrorCode::Unsupported, level_name(level) + " would have " + std::to_string(static_cast<std::int64_t>(quads)) + " quads; at most " +
-                                            std::to_string(max_subdivided_quads) + " are made");
-  hierarchy.refine_uniform(level);
-}
-
 bool has_operations(const HybridMesh& hierarchy, int level) {
   for (int o = 0; o < hierarchy.operation_count(); ++o)
     if (hierarchy.operation(o).enabled && hierarchy.operation(o).repatch.level == level) return true;
@@ -115,6 +106,15 @@ std::vector<bool> operations_below(const HybridMesh& hierarchy, int level) {
   return result;
 }
 
+void refine_all(HybridMesh& hierarchy, int level) {
+  double quads = 0;
+  for (const int leaf : hierarchy.leaves()) quads += std::ldexp(1.0, 2 * std::max(0, level - hierarchy.level(leaf)));
+  if (quads > static_cast<double>(max_subdivided_quads))
+    throw Error(ErrorCode::Unsupported, level_name(level) + " would have " + std::to_string(static_cast<std::int64_t>(quads)) + " quads; at most " +
+                                            std::to_string(max_subdivided_quads) + " are made");
+  hierarchy.refine_uniform(level);
+}
+
 SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int from, int to, const SubdivisionOptions& options,
                          const Progress& progress) {
   if (from < 0 || to < from || to > HybridMesh::max_level)
@@ -125,7 +125,7 @@ SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int
   SubdividedMesh result{hierarchy, {}, {}};
   HybridMesh& uniform = result.hierarchy;
   if (options.operations) choose_operations(uniform, *options.operations);
-  refine_to(uniform, to);
+  refine_all(uniform, to);
   QuadMesh mesh = starting_mesh(uniform, hierarchy, start, from);
   MeshTopology topology(uniform, mesh);
   apply_rules(options.rules, mesh, topology);

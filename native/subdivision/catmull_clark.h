@@ -69,6 +69,9 @@ SubdividedMesh subdivide(const HybridMesh& hierarchy, const QuadMesh& start, int
 
 inline constexpr std::int64_t max_subdivided_quads = std::int64_t{1} << 23;
 
+// Refines quads until all leaves have at least this level. Throws Error{Unsupported} if there would be more than max_subdivided_quads.
+void refine_all(HybridMesh& hierarchy, int level);
+
 // The choice that skips the enabled operations of a level and all finer ones.
 std::vector<bool> operations_below(const HybridMesh& hierarchy, int level);
 

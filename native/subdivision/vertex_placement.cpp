@@ -24,10 +24,10 @@ PatchMap unknown_map() {
   return map;
 }
 
-}  // namespace
-
-QuadMesh own_level_mesh(const HybridMesh& hierarchy, int level) {
-  QuadMesh mesh = hierarchy.level_mesh(level);
+// The mesh that extract(hierarchy) takes out of it; not a number where that has no position.
+template <class Extract>
+QuadMesh own_mesh(const HybridMesh& hierarchy, const Extract& extract) {
+  QuadMesh mesh = extract(hierarchy);
   std::vector<int> unmapped;  // roots
   for (const MapLocation& location : mesh.location)
     if (hierarchy.map_owner(location.node) < 0) unmapped.push_back(location.node);
@@ -37,7 +37,17 @@ QuadMesh own_level_mesh(const HybridMesh& hierarchy, int level) {
   HybridMesh marked = hierarchy;
   const PatchMap unknown = unknown_map();
   for (const int root : unmapped) marked.set_map(root, unknown);
-  return marked.level_mesh(level);
+  return extract(marked);
+}
+
+}  // namespace
+
+QuadMesh own_level_mesh(const HybridMesh& hierarchy, int level) {
+  return own_mesh(hierarchy, [&](const HybridMesh& mesh) { return mesh.level_mesh(level); });
+}
+
+QuadMesh own_final_mesh(const HybridMesh& hierarchy) {
+  return own_mesh(hierarchy, [](const HybridMesh& mesh) { return mesh.final_mesh(); });
 }
 
 int extend_harmonically(const QuadTopology& topology, const std::vector<Known>& known, std::vector<Vec3>& values) {

@@ -10,6 +10,8 @@ namespace hybrid_mesh {
 
 // A level's own mesh N^j, with the hierarchy's own positions: kept for the level or sampled from maps; not a number where there is neither.
 QuadMesh own_level_mesh(const HybridMesh& hierarchy, int level);
+// The same of the final mesh.
+QuadMesh own_final_mesh(const HybridMesh& hierarchy);
 
 // What is known of a vertex's value.
 enum class Known {

@@ -26,6 +26,7 @@ def check_mesh(mesh):
         "indices": (np.int32, (corners,)),
         "stretch": (np.float32, (faces,)),
         "anisotropy": (np.float32, (faces,)),
+        "quad": (np.int32, (faces,)),
         "patch": (np.int32, (faces,)),
         "root": (np.int32, (faces,)),
         "path": (np.int32, (faces,)),

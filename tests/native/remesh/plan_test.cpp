@@ -207,6 +207,47 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
   }
 }
 
+TEST(Plan, AnOperationBeginsOnTheBoundaryOfItsQuads) {
+  for (int side = 0; side < 4; ++side) {
+    Json plan = cube_plan();
+    const Json star = {{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 8}};
+    plan["levels"] = {{{"level", 1}, {"operations", {{{"kind", "repatch"}, {"quads", {"0.0", "0.1", "0.2", "0.3"}}, {"start", {"0.0", side}}, {"new_quads", star}}}}}};
+    std::string said;
+    try {
+      plan_from_json(plan.dump());
+    } catch (const Error& e) {
+      said = e.what();
+    }
+    // Sides 1 and 2 lead to the middle of the four, and from it.
+    EXPECT_EQ(said.find("operations[0].start") != std::string::npos, side == 1 || side == 2) << said;
+    EXPECT_EQ(said.empty(), side == 0 || side == 3) << said;
+  }
+}
+
+TEST(Plan, EditsOfAnotherBaseAreNotMadeOnThisOne) {
+  const PolygonSoup soup = ball(24);
+  const RemeshOptions options = options_of(BaseSize::Auto, Refinement::Uniform);
+  const RemeshResult first = run(soup, options);
+  const Json plan = Json::parse(first.plan);
+  ASSERT_FALSE(plan["base"]["origin"]["rounds"].empty());
+  ASSERT_FALSE(plan["base"]["origin"]["rounds"][0].empty());
+  const std::vector<std::function<void(Json&)>> mistakes = {
+      [](Json& edit) { edit["patches"][0] = 999999; },
+      [](Json& edit) { edit["start"][0] = 2147483640; },
+      [](Json& edit) { edit["quads"][0][0] = 1000000000; },
+      [](Json& edit) { edit["inner_nodes"] = 2147483647; },
+      [](Json& edit) { edit["rings"] = 1000000000; },
+      [](Json& edit) { edit["quads"].erase(0); },
+  };
+  for (const auto& spoil : mistakes) {
+    Json bad = plan;
+    spoil(bad["base"]["origin"]["rounds"][0][0]);
+    // It is laid out along the plan's lines instead.
+    const RemeshResult made = run(soup, options, bad.dump());
+    EXPECT_EQ(made.hierarchy.base_count(), first.hierarchy.base_count());
+  }
+}
+
 TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
   const RemeshResult made = run(spiked_ball(24), options_of(BaseSize::Minimal, Refinement::Uniform));
   const Json good = Json::parse(made.plan);
@@ -244,6 +285,8 @@ TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
       {operation, [&](Json& p) { p["levels"][at]["operations"][0]["quads"].erase(0); }},
       {operation + ".new_quads", [&](Json& p) { p["levels"][at]["operations"][0]["new_quads"].erase(0); }},
       {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 99; }},
+      // Billions of quads would have to have addresses before it is found that none of them is named.
+      {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 12; }},
   };
   for (const auto& [place, spoil] : mistakes) {
     Json bad = good;
