@@ -45,7 +45,7 @@ BaseMap carried(LayoutSearchResult found, const GlobalMapOptions& options, const
   BaseMap out;
   for (LayoutSearchResult::Stage& stage : found.stages) {
     stage.map.carry(kInfinity, options, progress);
-    out.levels.push_back({stage.level, std::move(stage.map.layout), std::move(stage.map.charts)});
+    out.levels.push_back({stage.level, std::move(stage.map.layout), std::move(stage.map.charts), {}});
   }
   out.edits = std::move(found.edits);
   out.script = std::move(found.script);

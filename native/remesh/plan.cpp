@@ -23,7 +23,6 @@ constexpr int kVersion = 1;
 constexpr int kMostLevels = 12;
 constexpr int kMostCubes = 1000;  // of a tower
 constexpr const char* kAutomatic = "automatic";
-constexpr std::int64_t kMostQuads = std::int64_t{1} << 22;  // of a level with operations
 
 // A value of the plan and its place in it, for messages.
 class Entry {
@@ -351,7 +350,7 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
     e.only({"level", "vertices", "vertices_a_quad", "operations"});
     const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, kMostLevels));
     while (levels.size() < level) {
-      if (4 * static_cast<std::int64_t>(layout.addresses().size()) > kMostQuads) e.at("level").refuse("would have more than " + std::to_string(kMostQuads) + " quads");
+      if (4 * static_cast<std::int64_t>(layout.addresses().size()) > kMostPlanQuads) e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
       levels.emplace_back();
       layout.quadrisect();
     }

@@ -13,6 +13,9 @@
 
 namespace hybrid_mesh {
 
+// A level of a plan with operations has at most so many quads: deeper ones take more memory than there is, and no operation is meant there.
+constexpr std::int64_t kMostPlanQuads = std::int64_t{1} << 22;
+
 // What decides the quads of a remesh: where the base domain's quads lie in space, and the irregular operations by their place in the hierarchy. Nothing in it refers to the input's
 // numbering, so that it can be carried out on any surface of about the same shape.
 struct Plan {

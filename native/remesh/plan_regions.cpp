@@ -43,6 +43,8 @@ class RegionRepatcher {
     if (const int finest = map_.levels.back().level; region.level < finest)
       throw Error(ErrorCode::InvalidInput, "level " + std::to_string(region.level) + " cannot be laid out anew: level " + std::to_string(finest) + " has operations already");
     while (level_ < region.level) {
+      if (4 * static_cast<std::int64_t>(layout_.addresses().size()) > kMostPlanQuads)
+        throw Error(ErrorCode::InvalidInput, "level " + std::to_string(region.level) + " would have more than " + std::to_string(kMostPlanQuads) + " quads");
       layout_.quadrisect();
       if (++level_ < static_cast<int>(map_.script.levels.size())) layout_.apply(map_.script.levels[level_]);
     }

@@ -150,6 +150,7 @@ TEST_F(PatternRegions, WhatDoesNotFitIsRefusedWithItsPlace) {
     return operation;
   };
   const std::vector<std::pair<std::string, Json>> mistakes = {
+      {"more than", changed(cubes, [](Json& o) { o["level"] = 12; })},
       {"one way", changed(cubes, [](Json& o) { o["curves"] = Json::array(); })},
       {"neither", changed(cubes, [](Json& o) { o.erase("layout"), o.erase("height"); })},
       {".layout", changed(cubes, [](Json& o) { o["layout"] = "spiral"; })},
