@@ -10,6 +10,7 @@
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
 #include "codec/container.h"
+#include "hierarchy/operation_template.h"
 #include "surface/topology_summary.h"
 
 namespace py = pybind11;
@@ -129,6 +130,47 @@ py::dict final_mesh(const PythonHierarchy& hierarchy) {
   return to_dict(without_gil([&] { return hierarchy.annotated(hierarchy.locked([](const HybridMesh& mesh) { return mesh.final_mesh(); })); }));
 }
 
+std::string address_of(const HybridMesh& mesh, const std::vector<int>& root_number, int node) {
+  std::string children;
+  for (; !mesh.is_root(node); node = mesh.parent(node)) children = "." + std::to_string(node - mesh.first_child(mesh.parent(node))) + children;
+  return std::to_string(root_number[node]) + children;
+}
+
+// An irregular operation with what it takes to do the same elsewhere.
+struct OperationRecord {
+  std::string kind;
+  int level = 0;
+  std::vector<std::string> quads;
+  std::optional<OperationTemplate> pattern;
+  std::string start;  // the address of its start's quad
+};
+
+OperationRecord record_of(const HybridMesh& mesh, const std::vector<int>& plan_root, int operation) {
+  if (operation < 0 || operation >= mesh.operation_count())
+    throw Error(ErrorCode::InvalidInput, "there is no operation " + std::to_string(operation) + ": the hierarchy has " + std::to_string(mesh.operation_count()));
+  const std::vector<int> number = root_numbers(mesh, plan_root);
+  const Repatch& repatch = mesh.operation(operation).repatch;
+  OperationRecord record{repatch.kind, repatch.level, {}, template_of(mesh, operation), {}};
+  for (const int node : repatch.removed) record.quads.push_back(address_of(mesh, number, node));
+  if (record.pattern) record.start = address_of(mesh, number, record.pattern->start.node);
+  return record;
+}
+
+py::dict operation(const PythonHierarchy& hierarchy, int number) {
+  const OperationRecord record = locked(hierarchy, [&](const HybridMesh& mesh) { return record_of(mesh, hierarchy.plan_root(), number); });
+  py::dict result;
+  result["kind"] = record.kind;
+  result["level"] = record.level;
+  result["quads"] = record.quads;
+  result["corners"] = record.pattern ? record.pattern->corners : 0;
+  result["start"] = record.pattern ? py::object(py::make_tuple(record.start, record.pattern->start.side)) : py::none();
+  py::list new_quads;
+  if (record.pattern)
+    for (const std::array<int, 4>& quad : record.pattern->quads) new_quads.append(std::vector<int>(quad.begin(), quad.end()));
+  result["new_quads"] = new_quads;
+  return result;
+}
+
 void save(const PythonHierarchy& hierarchy, const py::object& path_object, const std::optional<std::string>& metadata) {
   const std::string path = path_from_python(path_object);
   locked(hierarchy, [&](const HybridMesh& mesh) { save_hierarchy(mesh, metadata ? *metadata : hierarchy.metadata(), path); });
@@ -148,6 +190,12 @@ void bind_hierarchy(py::module_& module) {
       .def_property_readonly("level_names", &level_names, "From the base to the finest: N0, M1, N1, ...")
       .def("level", &level, arg("name"), "The mesh of a level, as a dict of arrays.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
+      .def_property_readonly(
+          "operation_count", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, [](const HybridMesh& mesh) { return mesh.operation_count(); }); },
+          "How many irregular operations there are.")
+      .def("operation", &operation, arg("number"),
+           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, and its new_quads as the template of a plan's operation has them: corners of them are "
+           "the region's, the first one where the side start (address, side) begins. corners is 0 where it replaces no disk by a disk.")
       .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")
       .def_property_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
       .def(

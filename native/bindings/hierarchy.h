@@ -22,6 +22,7 @@ class PythonHierarchy {
     shared_->plan_root = std::move(plan_root);
   }
 
+  const std::vector<int>& plan_root() const { return shared_->plan_root; }
   const std::string& metadata() const { return metadata_; }  // JSON text kept in the file
 
   // Calls function(const HybridMesh&), one caller at a time: sampling remembers where it was, and Python's other threads may go on.

@@ -116,12 +116,7 @@ void add_sources(const HybridMesh& hierarchy, const VertexSources& vertex_source
 }
 
 void add_addresses(const HybridMesh& hierarchy, const std::vector<int>& plan_root, AnnotatedMesh& annotated) {
-  std::vector<int> number = plan_root;
-  if (number.empty()) {
-    number.assign(hierarchy.node_count(), -1);
-    int roots = 0;
-    for (const int root : hierarchy.roots()) number[root] = roots++;
-  }
+  const std::vector<int> number = root_numbers(hierarchy, plan_root);
   for (std::size_t f = 0; f < annotated.mesh.face_count(); ++f) {
     std::int32_t path = 0, digit = 1;
     int node = annotated.mesh.node[f];
@@ -132,6 +127,14 @@ void add_addresses(const HybridMesh& hierarchy, const std::vector<int>& plan_roo
 }
 
 }  // namespace
+
+std::vector<int> root_numbers(const HybridMesh& hierarchy, const std::vector<int>& plan_root) {
+  if (!plan_root.empty()) return plan_root;
+  std::vector<int> number(hierarchy.node_count(), -1);
+  int roots = 0;
+  for (const int root : hierarchy.roots()) number[root] = roots++;
+  return number;
+}
 
 AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, const std::vector<int>& plan_root, QuadMesh mesh) {
   AnnotatedMesh annotated;

@@ -25,7 +25,9 @@ struct AnnotatedMesh {
   std::vector<std::array<float, 3>> source_weights;  // #V: barycentrics in it
 };
 
-// `plan_root`: per node, as RemeshResult has it; empty: roots are numbered in their order.
+// The numbers of root quads in addresses, per node. `plan_root`: as RemeshResult has it; empty: they are numbered in their order.
+std::vector<int> root_numbers(const HybridMesh& hierarchy, const std::vector<int>& plan_root);
+
 AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, const std::vector<int>& plan_root, QuadMesh mesh);
 pybind11::dict to_dict(const AnnotatedMesh& annotated);
 

@@ -805,4 +805,16 @@ DiskLayout fill_disk(const std::vector<int>& quads_at) {
   return layout;
 }
 
+DiskLayout fill_disk_with_ring(int edges) {
+  const DiskLayout inside = fill_disk(std::vector<int>(std::max(0, edges), 2));
+  DiskLayout layout;
+  layout.inner_nodes = edges + inside.inner_nodes;
+  for (int k = 0; k < edges; ++k) layout.quads.push_back({k, (k + 1) % edges, edges + (k + 1) % edges, edges + k});
+  for (auto quad : inside.quads) {
+    for (int& c : quad) c += edges;
+    layout.quads.push_back(quad);
+  }
+  return layout;
+}
+
 }  // namespace hybrid_mesh

@@ -19,4 +19,7 @@ struct DiskLayout {
 // Throws Error{InvalidInput} for an odd number of edges or fewer than four.
 DiskLayout fill_disk(const std::vector<int>& quads_at);
 
+// Fills a disk with so many boundary edges, a ring of quads along them first: two quads at every boundary node, and no two of these nodes joined inside. Throws as above.
+DiskLayout fill_disk_with_ring(int edges);
+
 }  // namespace hybrid_mesh

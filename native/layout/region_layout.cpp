@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
+#include <set>
 
 #include <Eigen/SparseCholesky>
 
@@ -14,6 +15,7 @@
 #include "layout/curve_network.h"
 #include "layout/decimation.h"
 #include "layout/quad_layout.h"
+#include "layout/region_pattern.h"
 #include "parameterization/convex_map.h"
 
 namespace hybrid_mesh {
@@ -43,7 +45,7 @@ std::optional<PatchRegion> make_region(const PatchedSurface& surface, const std:
       ++rim;
       if (start.patch < 0) start = {q, i};
     }
-  if (rim == 0) return std::nullopt;
+  if (rim == 0 || !inside(start.patch) || !on_rim(start)) return std::nullopt;
   PatchRegion region;
   region.patches = patches;
   PatchSide at = start;
@@ -524,8 +526,7 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
   const PatchedPart part = part_of(surface, region.patches);
   const TriangleSurface& disk = part.surface.mesh;
   const int n = static_cast<int>(region.corners.size());
-  const std::vector<int> valence = node_valences(surface);
-  const std::vector<char> on_boundary = boundary_nodes(surface);
+  const std::vector<int> wanted = regular_quads(surface, region);
   std::vector<int> corner_of(disk.points.size(), -1);
   DecimationOptions decimation;
   decimation.seed = seed;
@@ -540,9 +541,7 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
     const int v = part.surface.sides[local][s.side].front();
     corner_of[v] = k;
     decimation.fixed[v] = 1;
-    int inside = 0;
-    for (const int q : region.patches) inside += static_cast<int>(std::count(surface.nodes[q].begin(), surface.nodes[q].end(), region.corners[k]));
-    options.boundary_quads[v] = std::max(1, (on_boundary[region.corners[k]] ? 2 : 4) - (valence[region.corners[k]] - inside));
+    options.boundary_quads[v] = wanted[k];
   }
   // With more triangles than the quads need, pairs are found more easily beside a boundary that must stay.
   decimation.target_faces = std::max(n - 2, static_cast<int>(slack * quads));
@@ -567,21 +566,12 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
     number[k] = corner >= 0 ? corner : n + out.edit.inner_nodes++;
   }
   // No two nodes may be joined twice, not even by a side within the region and one outside.
-  std::map<std::pair<int, int>, int> joined;
-  std::vector<int> corner_of_node(surface.node_count, -1);
-  for (int k = 0; k < n; ++k) corner_of_node[region.corners[k]] = k;
-  for (int q = 0; q < surface.patch_count(); ++q) {
-    if (std::find(region.patches.begin(), region.patches.end(), q) != region.patches.end()) continue;
-    for (int i = 0; i < 4; ++i) {
-      const int a = corner_of_node[surface.nodes[q][i]], b = corner_of_node[surface.nodes[q][(i + 1) % 4]];
-      if (a >= 0 && b >= 0 && a != (b + 1) % n) joined[{a, b}] = 1, joined[{b, a}] = 1;
-    }
-  }
+  std::set<std::pair<int, int>> joined = joined_outside(surface, region);
   for (const QuadLayout::Quad& quad : layout.quads) {
     std::array<int, 4> nodes;
     for (int i = 0; i < 4; ++i) nodes[i] = number[quad.nodes[i]];
     for (int i = 0; i < 4; ++i)
-      if (nodes[i] == nodes[(i + 2) % 4] || ++joined[{nodes[i], nodes[(i + 1) % 4]}] > 1) return std::nullopt;
+      if (nodes[i] == nodes[(i + 2) % 4] || !joined.insert({nodes[i], nodes[(i + 1) % 4]}).second) return std::nullopt;
     out.edit.quads.push_back(nodes);
   }
   out.piece = cut_along_layout(disk, mesh, log, layout, progress);

@@ -19,7 +19,8 @@ struct PatchRegion {
   std::vector<int> inner_nodes;
 };
 
-// The region made of some patches, its boundary beginning at `start`, a boundary side (patch -1: any). Nothing if they are no disk or their boundary meets a node twice.
+// The region made of some patches, its boundary beginning at `start`, a boundary side (patch -1: any). Nothing if they are no disk, their boundary meets a node twice, or
+// `start` is not on it.
 std::optional<PatchRegion> make_region(const PatchedSurface& surface, const std::vector<int>& patches, PatchSide start = {});
 
 // New quads for a region: a replacement of its patches that leaves its boundary as it is. It names patches and corners alone, so that the same edit applies to every surface with

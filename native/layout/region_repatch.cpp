@@ -2,9 +2,12 @@
 #include "layout/region_repatch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "layout/region_pattern.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
 #include "parameterization/patch_gluing.h"
@@ -79,6 +82,30 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
   return out;
 }
 
+// New quads that need no curves.
+LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, const RegionPattern& pattern) {
+  LayoutEdit edit;
+  if (pattern.kind == RegionPattern::Kind::Automatic) {
+    edit = automatic_edit(surface, region);
+  } else if (pattern.kind == RegionPattern::Kind::Template) {
+    edit = template_edit(region, pattern.quads);
+  } else {
+    std::optional<LayoutEdit> tower = tower_edit(surface, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, region)));
+    if (!tower) throw Error(ErrorCode::InvalidInput, "no tower stands on its quads: it takes one, two neighbours, or all around a node");
+    edit = std::move(*tower);
+  }
+  if (const std::string defect = find_edit_defect(surface, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
+  return edit;
+}
+
+// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every time.
+ChartMesh held_on_lines(ChartMesh charts) {
+  const auto on_line = [](double x) { return x == std::round(x); };
+  for (std::size_t v = 0; v < charts.uv.size(); ++v)
+    if (charts.movable(static_cast<int>(v)) && (on_line(charts.uv[v].real()) || on_line(charts.uv[v].imag()))) charts.kind[v] = ChartMesh::Kind::Pinned;
+  return charts;
+}
+
 // The given patches and so many rings around them.
 std::vector<int> with_rings(const PatchedSurface& s, const std::vector<int>& patches, int rings) {
   std::vector<char> in(s.patch_count(), 0);
@@ -99,19 +126,26 @@ std::vector<int> with_rings(const PatchedSurface& s, const std::vector<int>& pat
 
 }  // namespace
 
-LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const DrawnRegion& drawn, const Progress& progress) {
-  ChartMesh rounded = map.charts;
+LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const RegionRepatch& repatch, const Progress& progress) {
+  ChartMesh rounded = held_on_lines(map.charts);
   std::vector<PatchMap> maps = extract_patch_maps(rounded, map.layout, surface.faces, progress.part(0, 0.2));
   MappedSurface mapped = glue_patch_maps(maps, map.layout, surface.faces);
-  const std::optional<PatchRegion> region = make_region(mapped.surface, drawn.patches);
-  if (!region) throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself");
-  DrawnEdit edit = draw(mapped.surface, *region, drawn.strokes, progress.part(0.2, 0.4));
-  const LayoutEdit made = edit.edit;
-  const LayoutChange change = apply_edit(mapped, std::move(edit));
+  const std::optional<PatchRegion> region = make_region(mapped.surface, repatch.patches, repatch.start);
+  if (!region) throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
+  LayoutEdit made;
+  LayoutChange change;
+  if (repatch.pattern.kind == RegionPattern::Kind::Drawn) {
+    DrawnEdit edit = draw(mapped.surface, *region, repatch.pattern.strokes, progress.part(0.2, 0.4));
+    made = edit.edit;
+    change = apply_edit(mapped, std::move(edit));
+  } else {
+    made = find_edit(mapped.surface, *region, repatch.pattern);
+    change = apply_edit(mapped, made);
+  }
   map_patches(mapped.surface, change.added, mapped.corners, progress.part(0.4, 0.5));
 
   // Relaxed with the rim held, so that the maps around it still fit.
-  const std::vector<int> relaxed = with_rings(mapped.surface, change.added, drawn.buffer_rings);
+  const std::vector<int> relaxed = with_rings(mapped.surface, change.added, repatch.buffer_rings);
   const PatchedPart part = part_of(mapped.surface, relaxed);
   std::vector<std::array<Vec2, 3>> corners;
   for (const int f : part.face) corners.push_back(mapped.corners[f]);

@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "layout/region_layout.h"
+#include "layout/region_pattern.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "hybrid-mesh plan";
 constexpr int kVersion = 1;
 constexpr int kMostLevels = 12;
+constexpr int kMostCubes = 1000;  // of a tower
 
 // A value of the plan and its place in it, for messages.
 class Entry {
@@ -171,6 +172,13 @@ Json edit_to_json(const LayoutEdit& edit, const std::vector<std::string>& addres
   return out;
 }
 
+std::array<int, 4> new_quad(const Entry& entry, std::int64_t most) {
+  const std::vector<Entry> nodes = entry.list(4);
+  std::array<int, 4> quad;
+  for (int i = 0; i < 4; ++i) quad[i] = static_cast<int>(nodes[i].integer(0, most));
+  return quad;
+}
+
 LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   const auto quad = [&](const Entry& e) {
     const int q = layout.find(e.text());
@@ -188,7 +196,7 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
   const std::string kind = entry.at("kind").text();
   if (kind == "add_cubes") {
-    std::optional<LayoutEdit> edit = tower_edit(layout.layout(), *region, static_cast<int>(entry.at("height").integer(1, 1000)));
+    std::optional<LayoutEdit> edit = tower_edit(layout.layout(), *region, static_cast<int>(entry.at("height").integer(1, kMostCubes)));
     if (!edit) entry.refuse("has quads on which no tower stands: it takes one, two neighbours, or all around a node");
     return std::move(*edit);
   }
@@ -198,26 +206,9 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   edit.start = region->boundary[0];
   const std::vector<Entry> quads = entry.at("new_quads").list();
   const int corners = static_cast<int>(region->corners.size());
-  std::set<int> inner;
-  std::map<std::pair<int, int>, int> sides;
-  for (const Entry& e : quads) {
-    const std::vector<Entry> nodes = e.list(4);
-    std::array<int, 4> q;
-    for (int i = 0; i < 4; ++i) {
-      q[i] = static_cast<int>(nodes[i].integer(0, 4 * static_cast<std::int64_t>(quads.size()) + corners));
-      if (q[i] >= corners) inner.insert(q[i]);
-    }
-    for (int i = 0; i < 4; ++i)
-      if (q[i] == q[(i + 1) % 4] || ++sides[{q[i], q[(i + 1) % 4]}] > 1) e.refuse("has a side that another one has, too");
-    edit.quads.push_back(q);
-  }
-  edit.inner_nodes = static_cast<int>(inner.size());
-  if (!inner.empty() && *inner.rbegin() != corners + edit.inner_nodes - 1)
-    entry.at("new_quads").refuse("must number its new nodes from " + std::to_string(corners) + " on without gaps");
-  for (int k = 0; k < corners; ++k)
-    if (sides.erase({k, (k + 1) % corners}) != 1) entry.at("new_quads").refuse("have no side from corner " + std::to_string(k) + " to the next");
-  for (const auto& [side, count] : sides)
-    if (!sides.count({side.second, side.first})) entry.at("new_quads").refuse("have a side inside the region with a quad on one side of it only");
+  for (const Entry& e : quads) edit.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size()) + corners));
+  if (const std::string defect = find_filling_defect(edit.quads, corners); !defect.empty()) entry.at("new_quads").refuse(defect);
+  for (const auto& q : edit.quads) edit.inner_nodes = std::max(edit.inner_nodes, *std::max_element(q.begin(), q.end()) + 1 - corners);
   return edit;
 }
 
@@ -373,43 +364,82 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
   return levels;
 }
 
+// --- regions -------------------------------------------------------------------------------------------------------------------------
+using Pattern = RegionPattern::Kind;
+constexpr std::array<std::pair<Pattern, const char*>, 3> kLayouts{{{Pattern::Automatic, "automatic"}, {Pattern::Cubes, "cubes"}, {Pattern::Template, "template"}}};
+
+Json curves_to_json(const std::vector<DrawnStroke>& strokes) {
+  Json curves = Json::array();
+  for (const DrawnStroke& s : strokes) {
+    Json points = Json::array();
+    for (const Vec3& p : s.points) points.push_back(to_json(p));
+    curves.push_back({{"points", std::move(points)}, {"fit", s.fit == DrawnStroke::Fit::Tight ? "tight" : "drawn"}});
+  }
+  return curves;
+}
+
 Json regions_to_json(const Plan& plan) {
   Json out = Json::array();
   for (const Plan::Region& r : plan.regions) {
-    Json curves = Json::array();
-    for (const DrawnStroke& s : r.strokes) {
-      Json points = Json::array();
-      for (const Vec3& p : s.points) points.push_back(to_json(p));
-      curves.push_back({{"points", std::move(points)}, {"fit", s.fit == DrawnStroke::Fit::Tight ? "tight" : "drawn"}});
-    }
-    out.push_back({{"level", r.level}, {"quads", r.quads}, {"curves", std::move(curves)}, {"buffer_rings", r.buffer_rings}});
+    Json region{{"level", r.level}, {"quads", r.quads}};
+    if (r.pattern.kind == Pattern::Drawn) region["curves"] = curves_to_json(r.pattern.strokes);
+    for (const auto& [kind, name] : kLayouts)
+      if (r.pattern.kind == kind) region["layout"] = name;
+    if (r.pattern.height > 0) region["height"] = r.pattern.height;
+    if (!r.start_quad.empty()) region["start"] = {r.start_quad, r.start_side};
+    if (r.pattern.kind == Pattern::Template) region["new_quads"] = r.pattern.quads;
+    region["buffer_rings"] = r.buffer_rings;
+    out.push_back(std::move(region));
   }
   return out;
 }
 
-std::vector<Plan::Region> regions_from_json(const Entry& entry) {
-  std::vector<Plan::Region> regions;
-  for (const Entry& e : entry.list()) {
-    e.only({"level", "quads", "curves", "buffer_rings"});
-    Plan::Region r;
-    r.level = static_cast<int>(e.at("level").integer(1, kMostLevels));
-    for (const Entry& q : e.at("quads").list()) r.quads.push_back(q.text());
-    if (r.quads.empty()) e.refuse("has no quads");
-    for (const Entry& c : e.at("curves").list()) {
-      c.only({"points", "fit"});
-      DrawnStroke stroke;
-      for (const Entry& p : c.at("points").list()) stroke.points.push_back(p.point());
-      if (c.has("fit")) {
-        const std::string fit = c.at("fit").text();
-        if (fit != "tight" && fit != "drawn") c.at("fit").refuse("must be \"tight\" or \"drawn\"");
-        stroke.fit = fit == "tight" ? DrawnStroke::Fit::Tight : DrawnStroke::Fit::AsDrawn;
-      }
-      r.strokes.push_back(std::move(stroke));
+std::vector<DrawnStroke> strokes_from_json(const Entry& entry) {
+  std::vector<DrawnStroke> strokes;
+  for (const Entry& c : entry.list()) {
+    c.only({"points", "fit"});
+    DrawnStroke stroke;
+    for (const Entry& p : c.at("points").list()) stroke.points.push_back(p.point());
+    if (c.has("fit")) {
+      const std::string fit = c.at("fit").text();
+      if (fit != "tight" && fit != "drawn") c.at("fit").refuse("must be \"tight\" or \"drawn\"");
+      stroke.fit = fit == "tight" ? DrawnStroke::Fit::Tight : DrawnStroke::Fit::AsDrawn;
     }
-    if (e.has("buffer_rings")) r.buffer_rings = static_cast<int>(e.at("buffer_rings").integer(0, 100));
-    regions.push_back(std::move(r));
+    strokes.push_back(std::move(stroke));
   }
-  return regions;
+  return strokes;
+}
+
+Plan::Region region_from_json(const Entry& entry) {
+  Plan::Region r;
+  std::set<std::string> keys{"level", "quads", "buffer_rings"};
+  if (entry.has("layout")) {
+    if (entry.has("curves")) entry.refuse("has \"curves\" and a \"layout\": it is laid out in one way");
+    const std::string word = entry.at("layout").text();
+    for (const auto& [kind, name] : kLayouts)
+      if (word == name) r.pattern.kind = kind;
+    if (r.pattern.kind == Pattern::Drawn) entry.at("layout").refuse("must be \"automatic\", \"cubes\" or \"template\"");
+    keys.insert("layout");
+    if (r.pattern.kind == Pattern::Cubes) keys.insert("height");
+    if (r.pattern.kind == Pattern::Template) keys.insert({"start", "new_quads"});
+  } else {
+    if (!entry.has("curves")) entry.refuse("has neither \"curves\" nor a \"layout\"");
+    keys.insert("curves");
+  }
+  entry.only(keys);
+  r.level = static_cast<int>(entry.at("level").integer(1, kMostLevels));
+  for (const Entry& q : entry.at("quads").list()) r.quads.push_back(q.text());
+  if (r.quads.empty()) entry.refuse("has no quads");
+  if (entry.has("curves")) r.pattern.strokes = strokes_from_json(entry.at("curves"));
+  if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, kMostCubes));
+  if (r.pattern.kind == Pattern::Template) {
+    const std::vector<Entry> start = entry.at("start").list(2), quads = entry.at("new_quads").list();
+    r.start_quad = start[0].text();
+    r.start_side = start[1].index(4);
+    for (const Entry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
+  }
+  if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, 100));
+  return r;
 }
 
 }  // namespace
@@ -432,6 +462,13 @@ void PlanLayout::quadrisect() {
   for (const std::string& a : address_)
     for (int k = 0; k < 4; ++k) finer.push_back(a + "." + std::to_string(k));
   address_ = std::move(finer);
+}
+
+void PlanLayout::apply(const LayoutScript::Level& level) {
+  std::vector<LayoutEdit> even;
+  for (const LayoutScript::EvenLayout& e : level.even) even.push_back(e.edit);
+  apply(std::move(even));
+  for (const auto& round : level.rounds) apply(round);
 }
 
 void PlanLayout::apply(std::vector<LayoutEdit> edits) {
@@ -496,7 +533,8 @@ Plan plan_from_json(const std::string& text) {
       throw Error(ErrorCode::InvalidInput, std::string("the plan's operations do not fit its base: ") + e.what());
     }
   }
-  if (top.has("operations")) plan.regions = regions_from_json(top.at("operations"));
+  if (top.has("operations")) 
+    for (const Entry& e : top.at("operations").list()) plan.regions.push_back(region_from_json(e));
   return plan;
 }
 

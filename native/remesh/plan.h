@@ -6,8 +6,8 @@
 #include <string>
 
 #include "layout/layout_search.h"
-#include "layout/drawn_layout.h"
 #include "layout/layout_transfer.h"
+#include "layout/region_repatch.h"
 #include "remesh/working_surface.h"
 
 namespace hybrid_mesh {
@@ -22,11 +22,13 @@ struct Plan {
     BaseDomainOptions base;
     LayoutScript::Level level;  // the base level's edits
   };
-  // Quads of one level, laid out anew along drawn curves after all of that level's other operations; see DrawnRegion.
+  // Quads of one level, laid out anew after all of that level's other operations; see RegionRepatch.
   struct Region {
     int level = 0;
-    std::vector<std::string> quads;    // addresses
-    std::vector<DrawnStroke> strokes;  // in the input's space
+    std::vector<std::string> quads;  // addresses
+    RegionPattern pattern;           // its strokes in the input's space
+    std::string start_quad;          // the address of the quad whose side `start_side` begins at corner 0; empty: any
+    int start_side = 0;
     int buffer_rings = 1;
   };
   LayoutOutline base;                       // in the input's space
@@ -45,6 +47,7 @@ class PlanLayout {
   const std::vector<std::string>& addresses() const { return address_; }  // per quad
   int find(const std::string& address) const;                             // -1: none
   void quadrisect();
+  void apply(const LayoutScript::Level& level);
   void apply(std::vector<LayoutEdit> edits);  // of one round: named by the layout before them. Throws Error{Internal} where there are no such quads
 
  private:

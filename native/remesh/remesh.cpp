@@ -16,11 +16,11 @@
 
 #include "hierarchy/stretch.h"
 #include "layout/base_map.h"
-#include "layout/region_repatch.h"
 #include "parameterization/patch_extraction.h"
 #include "remesh/adaptive_refinement.h"
 #include "remesh/layout_hierarchy.h"
 #include "remesh/plan.h"
+#include "remesh/plan_regions.h"
 #include "remesh/quality.h"
 #include "remesh/surface_fit.h"
 #include "remesh/working_surface.h"
@@ -380,13 +380,6 @@ class Remesher {
       throw Error(ErrorCode::InvalidInput, "the plan needs at least " + std::to_string(needed) + " vertices, more than the " + std::to_string(options_.vertices) + " allowed");
   }
 
-  static void apply_level(PlanLayout& layout, const LayoutScript::Level& level) {
-    std::vector<LayoutEdit> even;
-    for (const LayoutScript::EvenLayout& e : level.even) even.push_back(e.edit);
-    layout.apply(std::move(even));
-    for (const auto& round : level.rounds) layout.apply(round);
-  }
-
   // The numbers of root quads in addresses.
   void name_roots(const BaseMap& map, const PatchedSurface& base, const std::vector<std::vector<int>>& node_of) {
     const HybridMesh& h = result_.hierarchy;
@@ -395,67 +388,16 @@ class Remesher {
     for (std::size_t level = 0; level < node_of.size(); ++level) {
       if (level > 0) {
         layout.quadrisect();
-        if (level < map.script.levels.size()) apply_level(layout, map.script.levels[level]);
-        for (const auto& [at, edit] : drawn_edits_)
-          if (at == static_cast<int>(level)) layout.apply({edit});
+        if (level < map.script.levels.size()) layout.apply(map.script.levels[level]);
+        for (const RegionEdit& region : region_edits_)
+          if (region.level == static_cast<int>(level)) layout.apply({region.edit});
       }
       for (std::size_t q = 0; q < node_of[level].size(); ++q)
         if (h.is_root(node_of[level][q])) result_.plan_root[node_of[level][q]] = std::stoi(layout.addresses()[q]);
     }
   }
 
-  // The plan's drawn regions, coarse ones first.
-  void repatch_regions(BaseMap& map) {
-    drawn_edits_.clear();
-    std::vector<Plan::Region> regions = plan_->regions;
-    std::stable_sort(regions.begin(), regions.end(), [](const Plan::Region& a, const Plan::Region& b) { return a.level < b.level; });
-    PlanLayout layout(map.levels.front().layout);
-    int at = 0;
-    for (const Plan::Region& region : regions) {
-      if (region.level < map.levels.back().level)
-        throw Error(ErrorCode::InvalidInput, "a region of level " + std::to_string(region.level) + " cannot be laid out anew: level " +
-                                                 std::to_string(map.levels.back().level) + " has operations already");
-      while (at < region.level) {
-        layout.quadrisect();
-        if (++at < static_cast<int>(map.script.levels.size())) apply_level(layout, map.script.levels[at]);
-      }
-      DrawnRegion drawn;
-      for (const std::string& address : region.quads) {
-        drawn.patches.push_back(layout.find(address));
-        if (drawn.patches.back() < 0) throw Error(ErrorCode::InvalidInput, "level " + std::to_string(region.level) + " has no quad " + address);
-      }
-      drawn.strokes = region.strokes;
-      for (DrawnStroke& s : drawn.strokes)
-        for (Vec3& p : s.points) p = placement_.to_unit(p);
-      drawn.buffer_rings = region.buffer_rings;
-      LevelMap level = map.levels.back();
-      const bool fresh = level.level < region.level;
-      for (; level.level < region.level; ++level.level) {
-        level.charts.quadrisect();
-        level.layout = quadrisected(std::move(level.layout));
-      }
-      if (fresh) level.changed.assign(level.layout.patch_count(), 0);
-      LayoutEdit edit;
-      try {
-        edit = repatch_region(working_.mesh, level, drawn, progress_.part(0.45, 0.5));
-      } catch (LayoutError& e) {
-        for (LayoutProblem& p : e.problems)
-          for (Vec3& w : p.where) w = placement_.from_unit(w);
-        throw;
-      } catch (const Error& e) {
-        if (e.code() != ErrorCode::Internal) throw;
-        throw Error(ErrorCode::Unsupported, std::string("no map to the quads drawn in a region is found: ") + e.what());
-      }
-      if (fresh)
-        map.levels.push_back(std::move(level));
-      else
-        map.levels.back() = std::move(level);
-      if (static_cast<int>(map.edits.size()) <= region.level) map.edits.resize(region.level + 1);
-      map.edits[region.level].push_back(edit);
-      layout.apply({edit});
-      drawn_edits_.push_back({region.level, std::move(edit)});
-    }
-  }
+  void repatch(BaseMap& map) { region_edits_ = repatch_regions(working_.mesh, map, plan_->regions, placement_, progress_.part(0.45, 0.5)); }
 
   bool make_again() {
     if (!plan_->origin || plan_->origin->surface != fingerprint(result_.repaired)) return false;
@@ -464,7 +406,7 @@ class Remesher {
     try {
       const BaseDomain base = make_base(*plan_->origin);
       BaseMap map = map_to_base(working_.mesh, base, script, progress_.part(0.15, 0.45));
-      repatch_regions(map);
+      repatch(map);
       install(std::move(map), plan_->origin);
     } catch (const Error& e) {
       if (e.code() != ErrorCode::Internal) throw;
@@ -495,7 +437,7 @@ class Remesher {
       for (LayoutScript::EvenLayout& even : level.even) even.quads = 0;
     try {
       BaseMap map = map_to_base(working_.mesh, to_patched_surface(laid.layout), script, progress_.part(0.2, 0.45));
-      repatch_regions(map);
+      repatch(map);
       install(std::move(map), std::nullopt);
     } catch (const Error& e) {
       if (e.code() != ErrorCode::Internal) throw;
@@ -859,7 +801,7 @@ class Remesher {
   Budget budget_;
   Finest finest_;
   std::optional<Plan> plan_;  // that was given
-  std::vector<std::pair<int, LayoutEdit>> drawn_edits_;  // level and edit of its regions
+  std::vector<RegionEdit> region_edits_;  // of its regions
   // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
   std::int64_t aim_ = 0;
   int levels_less_ = 0;

@@ -267,3 +267,33 @@ def test_an_interrupt_ends_a_remesh():
     )
     assert ended.stdout == "interrupted True\n", ended.stderr
     assert time.perf_counter() - start < 60
+
+
+def test_an_operation_is_copied_to_another_region():
+    mesh = sphere(12)
+    corners = [[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    plan = {"format": "hybrid-mesh plan", "version": 1, "base": {"nodes": corners, "quads": quads}}
+    tower = {"level": 2, "quads": ["1.0.2", "1.1.3"], "layout": "cubes", "height": 2, "buffer_rings": 1}
+    settings = {"levels": 3}
+    first = _native.remesh(*mesh, {**settings, "plan": json.dumps({**plan, "operations": [tower]})}).hierarchy
+    assert first.operation_count == 1
+    operation = first.operation(0)
+    assert set(operation) == {"kind", "level", "quads", "corners", "start", "new_quads"}
+    assert operation["kind"] == "add_cubes" and operation["level"] == 2 and operation["corners"] == 6
+    assert sorted(operation["quads"]) == tower["quads"] and operation["start"][0] in tower["quads"] and len(operation["new_quads"]) == 14
+
+    def copied(quads, start):
+        copy = {"level": 2, "quads": quads, "layout": "template", "start": start, "new_quads": operation["new_quads"]}
+        return json.dumps({**plan, "operations": [tower, copy]})
+
+    # The same place in another quad of the base.
+    start = ["3" + operation["start"][0][1:], operation["start"][1]]
+    both = _native.remesh(*mesh, {**settings, "plan": copied(["3.0.2", "3.1.3"], start)}).hierarchy
+    assert both.check() == [] and both.operation_count == 2
+    assert both.operation(0)["new_quads"] == both.operation(1)["new_quads"] == operation["new_quads"]
+    with pytest.raises(_native.InvalidInput, match=r"operations\[1\].*boundary of 6 sides, and the region one of 4"):
+        _native.remesh(*mesh, {**settings, "plan": copied(["3.0.2"], ["3.0.2", 0])})
+    for wrong in (-1, 1):
+        with pytest.raises(_native.InvalidInput, match=f"no operation {wrong}"):
+            first.operation(wrong)

@@ -363,5 +363,21 @@ INSTANTIATE_TEST_SUITE_P(DiskLayout, RandomPatterns, testing::Values(Pattern::An
   return info.param == Pattern::Any ? "Any" : info.param == Pattern::MostlyStraight ? "MostlyStraight" : "FewCorners";
 });
 
+TEST(DiskLayoutWithRing, JoinsNoTwoBoundaryNodesInside) {
+  for (int n = 4; n <= 20; n += 2) {
+    const DiskLayout layout = fill_disk_with_ring(n);
+    EXPECT_EQ(find_defect(layout, n), "") << n;
+    const std::vector<int> around = quads_around(layout, n);
+    for (int k = 0; k < n; ++k) EXPECT_EQ(around[k], 2);
+    for (std::size_t k = n; k < around.size(); ++k) EXPECT_TRUE(around[k] >= 3 && around[k] <= 6) << n;
+    for (const auto& quad : layout.quads)
+      for (int i = 0; i < 4; ++i) {
+        const int a = quad[i], b = quad[(i + 1) % 4];
+        EXPECT_TRUE(a >= n || b >= n || b == (a + 1) % n);
+      }
+  }
+  for (const int bad : {-2, 0, 2, 3, 7}) EXPECT_THROW(fill_disk_with_ring(bad), Error);
+}
+
 }  // namespace
 }  // namespace hybrid_mesh
