@@ -19,6 +19,7 @@ CLASSES = (
     level_properties.HybridMeshCollection,
     layout_properties.HybridMeshProblem,
     layout_properties.HybridMeshLayout,
+    layout_properties.HybridMeshRegion,
     remesh_properties.HybridMeshScene,
     remesh_operators.HYBRID_MESH_OT_remesh,
     remesh_operators.HYBRID_MESH_OT_preset,

@@ -33,12 +33,12 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         drawn = properties.layout_of(surface, context.scene)
         layout.label(text=surface.name, icon="MESH_DATA")
         layout.operator("hybrid_mesh.draw_layout", icon="GREASEPENCIL")
+        if properties.is_level(surface):
+            self._region(layout, context.scene.hybrid_mesh_region)
         if drawn is None:
             return
         values = drawn.hybrid_mesh_layout
-        if properties.is_level(surface):
-            self._region(layout, values)
-        else:
+        if not properties.is_level(surface):
             self._whole(layout, values)
         if len(values.problems):
             layout.template_list("HYBRID_MESH_UL_problems", "", values, "problems", values, "problem_index", rows=min(len(values.problems), 6))
@@ -65,10 +65,12 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
             column.label(text=line)
 
     def _region(self, layout, values):
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
-        column.prop(values, "buffer_rings")
+        properties.draw_region(layout.column(), values)
         column = layout.column()
         column.scale_y = 1.4
-        column.operator("hybrid_mesh.repatch_region", icon="MOD_REMESH").buffer_rings = values.buffer_rings
+        if values.layout_kind == "COPY":
+            operator = column.operator_menu_enum("hybrid_mesh.repatch_region", "source", icon="MOD_REMESH")
+        else:
+            operator = column.operator("hybrid_mesh.repatch_region", icon="MOD_REMESH")
+        for name in properties.REGION_NAMES:
+            setattr(operator, name, getattr(values, name))

@@ -71,7 +71,7 @@ def build_hierarchy(context, obj, result, source, settings):
     report = json.loads(result.report)
     report["version"] = VERSION
     report["settings"] = settings.reported()
-    hierarchy_properties.describe(built, obj, report, result.plan)
+    hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
     levels.show_preview_only(built)
     return built
 
