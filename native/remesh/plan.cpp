@@ -22,6 +22,7 @@ constexpr const char* kFormat = "hybrid-mesh plan";
 constexpr int kVersion = 1;
 constexpr int kMostLevels = 12;
 constexpr int kMostCubes = 1000;  // of a tower
+constexpr const char* kAutomatic = "automatic";
 
 // A value of the plan and its place in it, for messages.
 class Entry {
@@ -66,6 +67,7 @@ class Entry {
     if (!json_->is_string()) refuse("must be text");
     return json_->get<std::string>();
   }
+  bool is(const char* word) const { return json_->is_string() && json_->get<std::string>() == word; }
   Vec3 point() const {
     const std::vector<Entry> c = list(3);
     constexpr double any = -std::numeric_limits<double>::max();
@@ -114,7 +116,23 @@ void curves_from_json(const Entry& entry, LayoutOutline& outline) {
   }
 }
 
+Json tower_to_json(const BoundaryTower& tower) {
+  Json nodes = Json::array();
+  for (const Vec3& p : tower.nodes) nodes.push_back(to_json(p));
+  return {{"boundary_nodes", tower.nodes.empty() ? Json(kAutomatic) : std::move(nodes)}, {"cubes", tower.cubes}};
+}
+
+BoundaryTower tower_from_json(const Entry& entry) {
+  BoundaryTower tower;
+  const Entry nodes = entry.at("boundary_nodes");
+  if (!nodes.is(kAutomatic))
+    for (const Entry& p : nodes.list(4)) tower.nodes.push_back(p.point());
+  if (entry.has("cubes")) tower.cubes = static_cast<int>(entry.at("cubes").integer(0, kMostCubes));
+  return tower;
+}
+
 Json base_to_json(const Plan& plan) {
+  if (plan.tower) return tower_to_json(*plan.tower);
   const LayoutOutline& base = plan.base;
   Json neighbours = Json::array();
   for (const auto& n : base.neighbours) {
@@ -234,6 +252,11 @@ LayoutEdit raw_edit(const Entry& entry) {
 }
 
 Json origin_to_json(const Plan::Origin& origin) {
+  if (origin.tower) {
+    Json out = tower_to_json(*origin.tower);
+    out["surface"] = origin.surface;
+    return out;
+  }
   Json rounds = Json::array();
   for (const auto& round : origin.level.rounds) {
     Json list = Json::array();
@@ -252,6 +275,13 @@ Json origin_to_json(const Plan::Origin& origin) {
 }
 
 Plan::Origin origin_from_json(const Entry& entry) {
+  if (entry.has("boundary_nodes")) {
+    entry.only({"surface", "boundary_nodes", "cubes"});
+    Plan::Origin origin;
+    origin.surface = entry.at("surface").text();
+    origin.tower = tower_from_json(entry);
+    return origin;
+  }
   entry.only({"surface", "faces", "size", "boundary_side", "least", "seed", "vertices", "vertices_a_quad", "rounds"});
   Plan::Origin origin;
   origin.surface = entry.at("surface").text();
@@ -366,7 +396,7 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
 
 // --- regions -------------------------------------------------------------------------------------------------------------------------
 using Pattern = RegionPattern::Kind;
-constexpr std::array<std::pair<Pattern, const char*>, 3> kLayouts{{{Pattern::Automatic, "automatic"}, {Pattern::Cubes, "cubes"}, {Pattern::Template, "template"}}};
+constexpr std::array<std::pair<Pattern, const char*>, 3> kLayouts{{{Pattern::Automatic, kAutomatic}, {Pattern::Cubes, "cubes"}, {Pattern::Template, "template"}}};
 
 Json curves_to_json(const std::vector<DrawnStroke>& strokes) {
   Json curves = Json::array();
@@ -523,9 +553,15 @@ Plan plan_from_json(const std::string& text) {
     throw Error(ErrorCode::Unsupported, "the plan has version " + std::to_string(version) + "; this program reads versions up to " + std::to_string(kVersion));
   const Entry base = top.at("base");
   Plan plan;
-  plan.base = base_from_json(base);
-  if (base.has("origin")) plan.origin = origin_from_json(base.at("origin"));
-  if (top.has("levels")) {
+  if (base.has("boundary_nodes")) {
+    base.only({"boundary_nodes", "cubes"});
+    plan.tower = tower_from_json(base);
+    if (top.has("levels") && !top.at("levels").list().empty()) top.at("levels").refuse("must be empty: quads have addresses once the base has been made; \"operations\" may be given");
+  } else {
+    plan.base = base_from_json(base);
+    if (base.has("origin")) plan.origin = origin_from_json(base.at("origin"));
+  }
+  if (top.has("levels") && !plan.tower) {
     try {
       plan.levels = levels_from_json(top.at("levels"), plan.base);
     } catch (const Error& e) {
@@ -533,7 +569,7 @@ Plan plan_from_json(const std::string& text) {
       throw Error(ErrorCode::InvalidInput, std::string("the plan's operations do not fit its base: ") + e.what());
     }
   }
-  if (top.has("operations")) 
+  if (top.has("operations"))
     for (const Entry& e : top.at("operations").list()) plan.regions.push_back(region_from_json(e));
   return plan;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "layout/boundary_tower.h"
 #include "layout/layout_search.h"
 #include "layout/layout_transfer.h"
 #include "layout/region_repatch.h"
@@ -21,6 +22,7 @@ struct Plan {
     std::int64_t faces = 0;  // see make_working_surface()
     BaseDomainOptions base;
     LayoutScript::Level level;  // the base level's edits
+    std::optional<BoundaryTower> tower;  // instead of all but the surface: in the input's space
   };
   // Quads of one level, laid out anew after all of that level's other operations; see RegionRepatch.
   struct Region {
@@ -32,6 +34,7 @@ struct Plan {
     int buffer_rings = 1;
   };
   LayoutOutline base;                       // in the input's space
+  std::optional<BoundaryTower> tower;       // instead of the base, and then there are no levels: in the input's space
   std::optional<Origin> origin;
   std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
   std::vector<Region> regions;

@@ -327,6 +327,7 @@ class Remesher {
     plan.base = outline_of(first);
     plan.origin = origin;
     plan.levels.assign(map.script.levels.begin() + 1, map.script.levels.end());
+    if (plan_) plan.regions = plan_->regions;
     for_outlines(plan.levels, [&](const Vec3& p) { return placement_.from_unit(p); });
     result_.plan = to_json(plan);
     watch_.stop();
@@ -370,7 +371,7 @@ class Remesher {
   // The base and the operations of a plan: made again as they were on the surface that the plan was made on, or laid out on this one.
   void build_planned_base() {
     budget_ = plan_budget();
-    if (!make_again()) lay_out();
+    if (!make_again()) plan_->tower ? grow() : lay_out();
     if (options_.refinement == Refinement::Uniform && options_.levels < 0) {
       budget_.levels = finest_.level;
       while (budget_.levels < 12 && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
@@ -399,13 +400,49 @@ class Remesher {
 
   void repatch(BaseMap& map) { region_edits_ = repatch_regions(working_.mesh, map, plan_->regions, placement_, progress_.part(0.45, 0.5)); }
 
+  // A base's level, and then those that the plan has above it.
+  LayoutScript script_over(LayoutScript::Level base) const {
+    LayoutScript script{{std::move(base)}};
+    script.levels.insert(script.levels.end(), plan_->levels.begin(), plan_->levels.end());
+    return script;
+  }
+
+  BaseMap map_to_searched_base(const Plan::Origin& origin) {
+    const BaseDomain base = make_base(origin);
+    return map_to_base(working_.mesh, base, script_over(origin.level), progress_.part(0.15, 0.45));
+  }
+
+  BaseMap map_to_tower(BoundaryTower tower) {
+    progress_.stage("base domain");
+    watch_.start("base");
+    constexpr int likely = 8;
+    working_ = make_working_surface(result_.repaired, placement_, 30 * (4 * std::max(likely, tower.cubes) + 1));
+    for (Vec3& p : tower.nodes) p = placement_.to_unit(p);
+    PatchedSurface base = grow_boundary_tower(working_.mesh, tower, progress_.part(0.05, 0.2));
+    progress_.stage("map");
+    watch_.start("map");
+    return map_to_base(working_.mesh, std::move(base), script_over({}), progress_.part(0.2, 0.45));
+  }
+
+  // A base on four points of the boundary. From then on the plan has its quads.
+  void grow() {
+    try {
+      BaseMap map = map_to_tower(*plan_->tower);
+      repatch(map);
+      Plan::Origin origin;
+      origin.surface = fingerprint(result_.repaired);
+      origin.tower = plan_->tower;
+      install(std::move(map), origin);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+      throw Error(ErrorCode::Unsupported, std::string("no map to a chain of cubes on the boundary is found: ") + e.what());
+    }
+  }
+
   bool make_again() {
     if (!plan_->origin || plan_->origin->surface != fingerprint(result_.repaired)) return false;
-    LayoutScript script{{plan_->origin->level}};
-    script.levels.insert(script.levels.end(), plan_->levels.begin(), plan_->levels.end());
     try {
-      const BaseDomain base = make_base(*plan_->origin);
-      BaseMap map = map_to_base(working_.mesh, base, script, progress_.part(0.15, 0.45));
+      BaseMap map = plan_->origin->tower ? map_to_tower(*plan_->origin->tower) : map_to_searched_base(*plan_->origin);
       repatch(map);
       install(std::move(map), plan_->origin);
     } catch (const Error& e) {
@@ -430,8 +467,7 @@ class Remesher {
     if (!laid.failure.empty()) throw Error(ErrorCode::InvalidInput, "the plan's base cannot be laid out on this surface: " + laid.failure);
     progress_.stage("map");
     watch_.start("map");
-    LayoutScript script{{LayoutScript::Level()}};
-    script.levels.insert(script.levels.end(), plan_->levels.begin(), plan_->levels.end());
+    LayoutScript script = script_over({});
     for_outlines(script.levels, to_unit);
     for (LayoutScript::Level& level : script.levels)
       for (LayoutScript::EvenLayout& even : level.even) even.quads = 0;
