@@ -28,6 +28,7 @@ CLASSES = (
     layout_operators.HYBRID_MESH_OT_check_layout,
     layout_operators.HYBRID_MESH_OT_show_problem,
     layout_operators.HYBRID_MESH_OT_remesh_layout,
+    layout_operators.HYBRID_MESH_OT_remesh_boundary,
     layout_operators.HYBRID_MESH_OT_repatch_region,
     layout_panel.HYBRID_MESH_UL_problems,
     remesh_panel.HYBRID_MESH_PT_remesh,

@@ -147,6 +147,13 @@ def selected_faces(obj):
     return values_of(obj.data.polygons, "select", 1, bool)
 
 
+def selected_vertices(obj):
+    """(points in world space (n, 3), whether each lies on a boundary (n,)) of the vertices that are selected in a mesh object in Edit Mode."""
+    chosen = [vertex for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
+    points = numpy.array([vertex.co for vertex in chosen], dtype=numpy.float64).reshape(-1, 3)
+    return transformed(points, world_matrix(obj.matrix_world)), numpy.array([vertex.is_boundary for vertex in chosen], dtype=bool)
+
+
 def quad_corners(obj, chosen):
     """Vertices of the faces that `chosen` (a bool a face) names, a row a face, from the first corner of its quad on as the hierarchy has it, whatever the mesh's
     order is; None where one of them has not four corners or the mesh has no map of its patches. In Edit Mode of the mesh that is edited."""

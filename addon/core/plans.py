@@ -114,6 +114,18 @@ def template_layout(address, side, new_quads):
     return {"layout": "template", "start": [str(address), side], "new_quads": quads}
 
 
+def boundary_plan(nodes=None, cubes=0):
+    """A plan's text whose base is a chain of cubes on four points of a disk's boundary.
+
+    nodes: four points in world space, in any order; None: they are found. cubes: 0 for as many as make their sides square.
+    """
+    _whole("cubes", cubes, 0, MAXIMUM_CUBES)
+    points = "automatic" if nodes is None else _points(nodes, "the boundary has nodes")
+    if nodes is not None and len(points) != 4:
+        raise PlanError(f"a base on a boundary has four nodes there, not {len(points)}")
+    return to_text({"format": FORMAT, "version": VERSION, "base": {"boundary_nodes": points, "cubes": cubes}})
+
+
 def parse(text):
     """A plan's text as a dict; raises PlanError where it is no plan that this version can read."""
     try:

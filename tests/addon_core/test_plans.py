@@ -117,3 +117,15 @@ def test_operations_are_appended_and_the_rest_is_kept():
 def test_what_is_no_plan(text):
     with pytest.raises(plans.PlanError):
         plans.with_operation(text, operation())
+
+
+def test_a_base_on_a_boundary():
+    assert json.loads(plans.boundary_plan())["base"] == {"boundary_nodes": "automatic", "cubes": 0}
+    nodes = numpy.eye(4)[:, :3]
+    plan = plans.parse(plans.boundary_plan(nodes, 3))
+    assert plan["base"] == {"boundary_nodes": nodes.tolist(), "cubes": 3}
+    for wrong in (nodes[:3], nodes[:, :2], numpy.full((4, 3), numpy.inf)):
+        with pytest.raises(plans.PlanError):
+            plans.boundary_plan(wrong)
+    with pytest.raises(plans.PlanError, match="cubes"):
+        plans.boundary_plan(nodes, -1)

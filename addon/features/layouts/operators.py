@@ -13,7 +13,7 @@ from ...core import settings as core
 from ...core.native import NativeMissing, explain, native
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
-from ..remesh.properties import core_settings
+from ..remesh.properties import CUBES, core_settings
 from . import drawing, properties
 
 
@@ -150,6 +150,44 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
 
     def failed(self, context, task, error):
         _show_failure(context, task.name, error)
+
+    def hides_source(self, context):
+        return context.scene.hybrid_mesh.hide_source
+
+
+class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
+    """Remesh a surface with one boundary loop from a base domain of cubes that stand on it, each on the one before. In Edit Mode, four selected vertices of the boundary are the first one's corners; else they are found"""
+
+    bl_idname = "hybrid_mesh.remesh_boundary"
+    bl_label = "Remesh from Boundary"
+    bl_options = {"REGISTER", "UNDO"}
+
+    cubes: CUBES
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if context.mode != "OBJECT" and not (context.mode == "EDIT_MESH" and context.object.type == "MESH"):
+            cls.poll_message_set("Works in Object Mode and in Edit Mode")
+            return False
+        return True
+
+    def draw(self, context):
+        self.layout.prop(self, "cubes")
+
+    def prepare(self, context):
+        surface = properties.surface_of(context.object, context.scene)
+        nodes = None
+        if surface.mode == "EDIT":
+            nodes = _boundary_nodes(surface)
+            surface.update_from_editmode()
+        settings = core_settings(context.scene.hybrid_mesh)
+        return [remesh_task(surface, context.evaluated_depsgraph_get(), settings, plans.boundary_plan(nodes, self.cubes))]
+
+    def finish(self, context, results):
+        _to_object_mode(context)
+        super().finish(context, results)
 
     def hides_source(self, context):
         return context.scene.hybrid_mesh.hide_source
@@ -306,6 +344,18 @@ def _show_failure(context, name, error):
 def _push_marks():
     """An operator that is cancelled makes no undo step; what it has marked is one of its own."""
     bpy.ops.ed.undo_push(message="Mark Layout Problems")
+
+
+def _boundary_nodes(surface):
+    """The four points that are selected on the boundary of a mesh in Edit Mode, or None where nothing is; raises ValueError."""
+    points, on_boundary = meshes.selected_vertices(surface)
+    if not len(points):
+        return None
+    if len(points) != 4:
+        raise ValueError(f"{surface.name}: {len(points)} {'vertex is' if len(points) == 1 else 'vertices are'} selected; select four of the boundary, or none")
+    if not on_boundary.all():
+        raise ValueError(f"{surface.name}: {4 - int(on_boundary.sum())} of the four selected vertices {'is' if on_boundary.sum() == 3 else 'are'} not on the boundary")
+    return points
 
 
 def _selected_quads(level, hierarchy):

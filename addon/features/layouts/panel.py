@@ -35,11 +35,14 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         layout.operator("hybrid_mesh.draw_layout", icon="GREASEPENCIL")
         if properties.is_level(surface):
             self._region(layout, context.scene.hybrid_mesh_region)
-        if drawn is None:
-            return
-        values = drawn.hybrid_mesh_layout
+        elif drawn is not None:
+            self._whole(layout, drawn.hybrid_mesh_layout)
+        if drawn is not None:
+            self._problems(context, layout, drawn.hybrid_mesh_layout)
         if not properties.is_level(surface):
-            self._whole(layout, values)
+            self._boundary(layout, context.scene.hybrid_mesh)
+
+    def _problems(self, context, layout, values):
         if len(values.problems):
             layout.template_list("HYBRID_MESH_UL_problems", "", values, "problems", values, "problem_index", rows=min(len(values.problems), 6))
             if values.problem_index < len(values.problems):
@@ -56,6 +59,14 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         column = layout.column()
         column.scale_y = 1.4
         column.operator("hybrid_mesh.remesh_layout", icon="MOD_REMESH")
+
+    def _boundary(self, layout, settings):
+        layout.separator()
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "cubes")
+        column.operator("hybrid_mesh.remesh_boundary", icon="MOD_REMESH").cubes = settings.cubes
 
     def _words(self, context, layout, problem):
         """All that is said of a problem, in lines that fit the sidebar."""
