@@ -226,6 +226,15 @@ def test_a_region_is_laid_out_without_curves(world, region, kind, new_quads):
     assert world.distance(region.scan, level_of(preview, sorted(one.hybrid_mesh.level for one in preview.hybrid_mesh.hierarchy.objects)[-1]))["hausdorff"] < 0.03
 
 
+def test_a_region_of_a_semi_regular_remesh_becomes_an_operation(world):
+    bpy.context.scene.hybrid_mesh.semi_regular = True
+    region = Region(world, world.scan())
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    assert len(operations(bpy.context.object)) == 1 and len(level_of(bpy.context.object, "N1").data.polygons) == len(region.level.data.polygons) + 6
+
+
 @pytest.mark.parametrize("place", [{}, {"scale": (-1, 1, 1.3)}])
 def test_a_layout_is_copied_to_another_region(world, place):
     region = Region(world, world.scan(**place))
