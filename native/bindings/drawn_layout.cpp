@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Layouts drawn on a mesh.
-#include "layout/drawn_layout.h"
 
 #include <cmath>
 #include <limits>
@@ -9,6 +8,8 @@
 #include "bindings/conversions.h"
 #include "bindings/job.h"
 #include "bindings/layout_problems.h"
+#include "layout/face_filling.h"
+#include "layout/layout_transfer.h"
 #include "remesh/plan.h"
 #include "surface/repair.h"
 
@@ -75,7 +76,7 @@ py::array_t<double> positions(const PatchLayout& layout, const std::vector<int>&
 
 py::dict to_dict(const DrawnLayout& drawn) {
   const PatchLayout& layout = drawn.layout;
-  py::list curves, faces;
+  py::list curves, faces, quads;
   for (const PatchLayout::Curve& c : layout.curves) {
     py::dict curve;
     curve["nodes"] = py::make_tuple(c.from, c.to);
@@ -94,7 +95,9 @@ py::dict to_dict(const DrawnLayout& drawn) {
   py::dict result;
   result["nodes"] = positions(layout, layout.nodes);
   result["curves"] = curves;
+  for (const DiskLayout& filling : find_fillings(layout)) quads.append(filling.quads.size());
   result["faces"] = faces;
+  result["quads"] = quads;
   result["problems"] = to_list(drawn.problems);
   return result;
 }
@@ -112,41 +115,18 @@ DrawnLayout drawn_layout(const py::object& points, const py::object& faces, cons
   });
 }
 
-LayoutOutline outline_of(const PatchLayout& layout) {
-  constexpr std::size_t parts = 12;
-  LayoutOutline outline;
-  for (const int v : layout.nodes) outline.nodes.push_back(layout.mesh.points[v]);
-  std::vector<PatchSide> of(2 * layout.curves.size());
-  const auto place = [](const PatchLayout::Side& s, bool same) { return 2 * s.curve + (s.forward == same ? 1 : 0); };
-  for (std::size_t f = 0; f < layout.faces.size(); ++f)
-    for (int i = 0; i < 4; ++i) of[place(layout.faces[f].cycles[0][i], true)] = {static_cast<int>(f), i};
-  for (const PatchLayout::Face& face : layout.faces) {
-    auto& quad = outline.quads.emplace_back();
-    auto& neighbours = outline.neighbours.emplace_back();
-    auto& sides = outline.sides.emplace_back();
-    for (int i = 0; i < 4; ++i) {
-      const PatchLayout::Side& s = face.cycles[0][i];
-      quad[i] = layout.start(s);
-      neighbours[i] = of[place(s, false)];
-      if (!s.forward) continue;
-      const std::vector<int> points = layout.points(s);
-      const std::size_t last = points.size() - 1, count = std::min(parts, last);
-      for (std::size_t k = 0; k <= count; ++k) sides[i].push_back(layout.mesh.points[points[k * last / count]]);
-    }
-  }
-  return outline;
-}
-
 py::dict make_layout_from_arrays(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
   return to_dict(drawn_layout(points, faces, strokes, snap));
 }
 
 py::dict layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
   DrawnLayout drawn = drawn_layout(points, faces, strokes, snap);
-  require_quads(drawn);
-  py::dict result = to_dict(drawn);
   Plan plan;
-  if (drawn.problems.empty()) plan.base = outline_of(drawn.layout);
+  without_gil([&] {
+    const PatchedSurface quads = fill_faces(drawn);
+    if (drawn.problems.empty()) plan.base = outline_of(quads);
+  });
+  py::dict result = to_dict(drawn);
   result["plan"] = drawn.problems.empty() ? to_json(plan) : "";
   return result;
 }
@@ -170,10 +150,11 @@ py::list to_list(const std::vector<LayoutProblem>& problems) {
 void bind_drawn_layout(py::module_& module) {
   using py::arg;
   module.def("make_layout", &make_layout_from_arrays, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
-             "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces and problems. A stroke is a dict of points (n, 3) and fit, 'tight' or "
-             "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise.");
+             "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces, quads and problems. A stroke is a dict of points (n, 3) and fit, 'tight' or "
+             "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise; quads says "
+             "how many each face is filled with, 0 where it cannot be.");
   module.def("layout_plan", &layout_plan, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
-             "The same, and its faces as the base domain of a plan: the entry plan is JSON text, empty if there are problems.");
+             "The same, and its faces, filled with quads, as the base domain of a plan: the entry plan is JSON text, empty if there are problems.");
 }
 
 }  // namespace hybrid_mesh

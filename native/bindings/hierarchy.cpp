@@ -194,8 +194,8 @@ void bind_hierarchy(py::module_& module) {
           "operation_count", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, [](const HybridMesh& mesh) { return mesh.operation_count(); }); },
           "How many irregular operations there are.")
       .def("operation", &operation, arg("number"),
-           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, and its new_quads as the template of a plan's operation has them: corners of them are "
-           "the region's, the first one where the side start (address, side) begins. corners is 0 where it replaces no disk by a disk.")
+           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, and its new_quads, numbered as a template in a plan: nodes 0 .. corners - 1 are the "
+           "region's corners from the side start, (address, side), on. Where it does not replace a disk by a disk, corners is 0, start None and new_quads empty.")
       .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")
       .def_property_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
       .def(

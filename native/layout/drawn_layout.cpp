@@ -484,18 +484,4 @@ DrawnLayout make_layout(const TriangleSurface& surface, const std::vector<DrawnS
   return out;
 }
 
-void require_quads(DrawnLayout& drawn) {
-  if (!drawn.problems.empty()) return;
-  const PatchLayout& layout = drawn.layout;
-  for (std::size_t f = 0; f < layout.faces.size(); ++f) {
-    const int sides = layout.faces[f].side_count();
-    if (sides == 4) continue;
-    LayoutProblem problem{LayoutProblem::Kind::ManySides, "a face has " + std::to_string(sides) + " sides: curves across it must divide it into faces of four", {}};
-    problem.face = static_cast<int>(f);
-    for (const PatchLayout::Side& s : layout.faces[f].cycles.front())
-      for (const int v : layout.points(s)) problem.where.push_back(layout.mesh.points[v]);
-    drawn.problems.push_back(std::move(problem));
-  }
-}
-
 }  // namespace hybrid_mesh

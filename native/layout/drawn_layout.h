@@ -36,9 +36,6 @@ struct DrawnLayout {
 // The result has no problems if every face is a disk with an even number of sides, at least four, that does not touch itself. Any scale and place. Throws Error{InvalidInput} for options out of range.
 DrawnLayout make_layout(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options, const Progress& progress);
 
-// Names the faces of a layout without problems that have more than four sides: where only quads will do they are problems, too.
-void require_quads(DrawnLayout& drawn);
-
 // Drawn curves that make no layout of quads.
 class LayoutError : public Error {
  public:

@@ -356,8 +356,7 @@ class LayoutSearch {
     const auto add_ring = [&](const std::vector<int>& patches) {
       if (!room) return;
       if (const auto region = make_region(s, patches))
-        if (const auto edit = tower_edit(s, *region, 1))
-          if (s.patch_count() + edit->growth() <= options_->quads) add(*region, *edit);
+        if (const LayoutEdit edit = tower_edit(s, *region, 1); s.patch_count() + edit.growth() <= options_->quads) add(*region, edit);
     };
     for (int q = 0; q < s.patch_count(); ++q) {
       add_ring({q});
@@ -399,7 +398,7 @@ class LayoutSearch {
       const int height = std::min(8, tower_height(s, found[i].region));
       if (height < 2) continue;
       Candidate tall = found[i];
-      tall.edit = *tower_edit(s, tall.region, height);
+      tall.edit = tower_edit(s, tall.region, height);
       if (s.patch_count() + tall.edit.growth() > options_->quads) continue;
       found.push_back(std::move(tall));
     }

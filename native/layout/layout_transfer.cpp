@@ -393,6 +393,26 @@ class LayoutTracer {
 
 }  // namespace
 
+LayoutOutline outline_of(const PatchedSurface& surface) {
+  constexpr std::size_t parts = 12;
+  LayoutOutline outline;
+  outline.nodes.resize(surface.node_count);
+  outline.quads = surface.nodes;
+  outline.neighbours = surface.neighbours;
+  outline.sides.resize(surface.patch_count());
+  for (int q = 0; q < surface.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i) {
+      const std::vector<int>& side = surface.sides[q][i];
+      outline.nodes[surface.nodes[q][i]] = surface.mesh.points[side.front()];
+      // Each line once.
+      const PatchSide& other = surface.neighbours[q][i];
+      if (other.patch >= 0 && std::pair(other.patch, other.side) < std::pair(q, i)) continue;
+      const std::size_t last = side.size() - 1, count = std::min(parts, last);
+      for (std::size_t k = 0; k <= count; ++k) outline.sides[q][i].push_back(surface.mesh.points[side[k * last / count]]);
+    }
+  return outline;
+}
+
 TransferredLayout transfer_layout(const TriangleSurface& surface, const LayoutOutline& outline, const Progress& progress) {
   if (surface.empty() || outline.quads.empty()) throw Error(ErrorCode::InvalidInput, "a layout needs a surface and quads");
   TransferredLayout out = LayoutTracer(surface, outline, progress).run();

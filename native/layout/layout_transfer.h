@@ -18,6 +18,9 @@ struct LayoutOutline {
   std::vector<std::array<std::vector<Vec3>, 4>> sides;  // lines in space along which the sides lay, where known: of several ways around the surface they tell which one is meant. May be empty
 };
 
+// Of a cut surface: its sides thinned out to a few points each.
+LayoutOutline outline_of(const PatchedSurface& surface);
+
 struct TransferredLayout {
   PatchLayout layout;   // its faces are the quads, its first nodes the nodes, both in their order; empty if it failed
   std::string failure;  // why there is no such layout; empty if there is one

@@ -55,7 +55,7 @@ struct LayoutProblem {
     NotADisk,      // a face with a hole or a handle
     TooFewSides,
     OddSides,
-    ManySides,     // a face of more than four sides, where only quads will do
+    ManySides,     // a face of more than four sides in which no quads can be drawn
     TouchesItself  // a face that has the same node at two of its corners: no map of it to a polygon is one to one
   };
   Kind kind;

@@ -4,19 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
-#include <queue>
 #include <set>
-
-#include <Eigen/SparseCholesky>
 
 #include "base/error.h"
 #include "layout/curve_network.h"
 #include "layout/decimation.h"
+#include "layout/disk_drawing.h"
 #include "layout/quad_layout.h"
 #include "layout/region_pattern.h"
-#include "parameterization/convex_map.h"
 
 namespace hybrid_mesh {
 
@@ -90,9 +86,8 @@ LayoutEdit chord_edit(const PatchRegion& region, int from) {
   return edit;
 }
 
-std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings) {
+LayoutEdit tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings) {
   const int n = static_cast<int>(region.corners.size());
-  if (region.inner_nodes.size() > 1) return std::nullopt;
   LayoutEdit edit;
   edit.patches = region.patches;
   edit.start = region.boundary[0];
@@ -100,11 +95,12 @@ std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchR
   edit.inner_nodes = n * rings + static_cast<int>(region.inner_nodes.size());
   for (int r = 0; r < rings; ++r)
     for (int k = 0; k < n; ++k) edit.quads.push_back({n * r + k, n * r + (k + 1) % n, n * (r + 1) + (k + 1) % n, n * (r + 1) + k});
+  const auto place = [](const std::vector<int>& nodes, int node) { return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin()); };
   for (const int q : region.patches) {
     std::array<int, 4> quad;
     for (int i = 0; i < 4; ++i) {
-      const auto at = std::find(region.corners.begin(), region.corners.end(), surface.nodes[q][i]);
-      quad[i] = n * rings + (at == region.corners.end() ? n : static_cast<int>(at - region.corners.begin()));
+      const int corner = place(region.corners, surface.nodes[q][i]);
+      quad[i] = n * rings + (corner < n ? corner : n + place(region.inner_nodes, surface.nodes[q][i]));
     }
     edit.quads.push_back(quad);
   }
@@ -206,35 +202,6 @@ LayoutEdit renumbered(LayoutEdit edit, const LayoutChange& change) {
 
 namespace {
 
-// Lengths of shortest paths along edges from some vertices.
-std::vector<double> distances(const TriangleSurface& mesh, const std::vector<int>& from) {
-  std::vector<std::vector<int>> leaving(mesh.points.size());
-  for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
-    leaving[mesh.from(h)].push_back(mesh.to(h));
-    if (mesh.opposite[h] < 0) leaving[mesh.to(h)].push_back(mesh.from(h));
-  }
-  std::vector<double> distance(mesh.points.size(), 1e300);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  for (const int v : from) queue.push({distance[v] = 0, v});
-  while (!queue.empty()) {
-    const auto [d, v] = queue.top();
-    queue.pop();
-    if (d > distance[v]) continue;
-    for (const int w : leaving[v]) {
-      const double along = d + (mesh.points[w] - mesh.points[v]).norm();
-      if (along < distance[w]) queue.push({distance[w] = along, w});
-    }
-  }
-  return distance;
-}
-
-double length_of(const TriangleSurface& mesh, const std::vector<int>& loop) {
-  double length = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k) length += (mesh.points[loop[k]] - mesh.points[loop[(k + 1) % loop.size()]]).norm();
-  return length;
-}
-
 // The region's boundary in a part made of its patches: all vertices along it.
 std::vector<int> rim_of(const PatchedPart& part, const PatchRegion& region) {
   std::vector<int> rim;
@@ -251,8 +218,8 @@ std::vector<int> rim_of(const PatchedPart& part, const PatchRegion& region) {
 int tower_height(const PatchedSurface& surface, const PatchRegion& region) {
   const PatchedPart part = part_of(surface, region.patches);
   const std::vector<int> rim = rim_of(part, region);
-  const std::vector<double> depth = distances(part.surface.mesh, rim);
-  const double side = length_of(part.surface.mesh, rim) / static_cast<double>(region.corners.size());
+  const std::vector<double> depth = edge_distances(part.surface.mesh, rim);
+  const double side = loop_length(part.surface.mesh, rim) / static_cast<double>(region.corners.size());
   return static_cast<int>(std::lround(*std::max_element(depth.begin(), depth.end()) / std::max(side, 1e-300)));
 }
 
@@ -265,9 +232,9 @@ class Relayout {
 
   LayoutChange run() {
     take_region();
-    embed();
-    place_nodes();
-    cut();
+    std::vector<std::vector<int>> sides;
+    for (const PatchSide& side : region_.boundary) sides.push_back(part_.surface.sides[local_patch(side.patch)][side.side]);
+    piece_ = draw_quads(part_.surface, sides, edit_);
     return merge();
   }
 
@@ -285,175 +252,7 @@ class Relayout {
     part_ = part_of(mapped_.surface, edit_.patches);
   }
 
-  TriangleSurface& disk() { return part_.surface.mesh; }
   int local_patch(int q) const { return static_cast<int>(std::find(edit_.patches.begin(), edit_.patches.end(), q) - edit_.patches.begin()); }
-
-  void embed() {
-    const int n = static_cast<int>(region_.corners.size());
-    std::vector<DiskSide> sides;
-    std::vector<Vec2> polygon;
-    for (int k = 0; k < n; ++k) {
-      const PatchSide& s = region_.boundary[k];
-      sides.push_back({part_.surface.sides[local_patch(s.patch)][s.side], {}});
-      const double angle = 2 * std::numbers::pi * k / n;
-      polygon.push_back(Vec2(std::cos(angle), std::sin(angle)));
-      corner_vertex_.push_back(sides.back().points.front());
-    }
-    polygon_ = polygon;
-    rim_ = rim_of(part_, region_);
-    ConvexMap convex_map(disk());
-    std::vector<int> faces;
-    for (;;) {
-      faces.resize(disk().faces.size());
-      std::iota(faces.begin(), faces.end(), 0);
-      const std::vector<int> chords = convex_map.side_chords(faces, sides);
-      if (chords.empty()) break;
-      for (const int h : chords) split_inner_edge(disk(), part_.surface.source, h);
-      connect_half_edges(disk());
-    }
-    std::vector<std::array<Vec2, 3>> corners(disk().faces.size());
-    if (!convex_map(faces, sides, polygon, corners)) throw Error(ErrorCode::Internal, "the map of a region degenerates in double precision");
-    uv_.resize(disk().points.size());
-    for (const int f : faces)
-      for (int i = 0; i < 3; ++i) uv_[disk().faces[f][i]] = corners[f][i];
-  }
-
-  // Where a point lies between a centre (0) and the polygon's rim (1).
-  double gauge(const Vec2& p, const Vec2& centre) const {
-    double most = 0;
-    for (std::size_t k = 0; k < polygon_.size(); ++k) {
-      const Vec2 a = polygon_[k], e = polygon_[(k + 1) % polygon_.size()] - a;
-      const auto inside = [&](const Vec2& x) { return e.x() * (x.y() - a.y()) - e.y() * (x.x() - a.x()); };
-      const double at_centre = inside(centre);
-      if (at_centre > 0) most = std::max(most, 1 - inside(p) / at_centre);
-    }
-    return most;
-  }
-
-  // Where the tower's rings lie, as gauges: equally high above the region's boundary.
-  std::vector<double> ring_gauges(Vec2& centre) {
-    const std::vector<double> depth = distances(disk(), rim_);
-    const std::size_t tip = std::max_element(depth.begin(), depth.end()) - depth.begin();
-    // The tip itself may be next to the rim in the plane: the rings keep some room.
-    centre = 0.9 * uv_[tip];
-    const double side = length_of(disk(), rim_) / static_cast<double>(polygon_.size());
-    // The last one as far from the tip as a square's sides are from its middle, or at the height that leaves as much above it as is between two, less a little.
-    const double rings = edit_.rings;
-    const double last = std::max((rings - 0.1) / (rings + 1) * depth[tip], depth[tip] - 0.6 * side);
-    std::vector<double> gauges;
-    double outer = 1;
-    for (int r = 0; r < edit_.rings; ++r) {
-      const double wanted = last * (r + 1) / rings, width = 0.2 * last / rings;
-      std::vector<double> at;
-      for (std::size_t v = 0; v < depth.size(); ++v)
-        if (std::abs(depth[v] - wanted) < width) at.push_back(gauge(uv_[v], centre));
-      double shrink = 0.5 * outer;
-      if (!at.empty()) {
-        std::nth_element(at.begin(), at.begin() + at.size() / 2, at.end());
-        shrink = std::clamp(at[at.size() / 2], 0.02 * outer, 0.9 * outer);
-      }
-      gauges.push_back(outer = shrink);
-    }
-    return gauges;
-  }
-
-  // Tutte's embedding of the new quads' sides: every quad is convex.
-  std::vector<Vec2> drawn_nodes() const {
-    const int n = static_cast<int>(polygon_.size()), all = n + edit_.inner_nodes;
-    std::vector<std::vector<int>> beside(all);
-    for (const auto& quad : edit_.quads)
-      for (int i = 0; i < 4; ++i)
-        if (quad[i] >= n) {
-          beside[quad[i]].push_back(quad[(i + 1) % 4]);
-          beside[quad[i]].push_back(quad[(i + 3) % 4]);
-        }
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(edit_.inner_nodes, 2);
-    for (int k = n; k < all; ++k) {
-      entries.emplace_back(k - n, k - n, static_cast<double>(beside[k].size()));
-      for (const int w : beside[k]) {
-        if (w >= n)
-          entries.emplace_back(k - n, w - n, -1.0);
-        else
-          right.row(k - n) += polygon_[w].transpose();
-      }
-    }
-    Eigen::SparseMatrix<double> matrix(edit_.inner_nodes, edit_.inner_nodes);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    const Eigen::MatrixXd at = solver.solve(right);
-    std::vector<Vec2> nodes = polygon_;
-    for (int k = 0; k < edit_.inner_nodes; ++k) nodes.push_back(at.row(k).transpose());
-    return nodes;
-  }
-
-  void place_nodes() {
-    const int n = static_cast<int>(polygon_.size());
-    std::vector<Vec2> inner;
-    if (edit_.rings > 0) {
-      Vec2 centre(0, 0);
-      const std::vector<double> gauges = ring_gauges(centre);
-      for (int k = 0; k < edit_.inner_nodes; ++k) inner.push_back(k < n * edit_.rings ? Vec2(centre + gauges[k / n] * (polygon_[k % n] - centre)) : centre);
-    } else if (edit_.inner_nodes > 0) {
-      const std::vector<Vec2> nodes = drawn_nodes();
-      inner.assign(nodes.begin() + n, nodes.end());
-    }
-    for (const Vec2& p : inner) inner_vertex_.push_back(insert(p));
-    connect_half_edges(disk());
-  }
-
-  // Splits the face that holds a point of the plane.
-  int insert(const Vec2& p) {
-    TriangleSurface& mesh = disk();
-    int face = 0;
-    double best = -1e300;
-    std::array<double, 3> weights{1, 0, 0};
-    for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
-      const std::array<int, 3>& c = mesh.faces[f];
-      const auto area = [&](const Vec2& x, const Vec2& y, const Vec2& z) { return (y.x() - x.x()) * (z.y() - x.y()) - (y.y() - x.y()) * (z.x() - x.x()); };
-      const double whole = area(uv_[c[0]], uv_[c[1]], uv_[c[2]]);
-      if (!(whole > 0)) continue;
-      const std::array<double, 3> w{area(uv_[c[1]], uv_[c[2]], p) / whole, area(uv_[c[2]], uv_[c[0]], p) / whole, area(uv_[c[0]], uv_[c[1]], p) / whole};
-      const double least = std::min({w[0], w[1], w[2]});
-      if (least > best) best = least, face = f, weights = w;
-    }
-    double sum = 0;
-    for (double& w : weights) sum += w = std::max(w, 0.02);
-    for (double& w : weights) w /= sum;
-    const std::array<int, 3> c = mesh.faces[face];
-    const int v = static_cast<int>(mesh.points.size());
-    mesh.points.push_back(weights[0] * mesh.points[c[0]] + weights[1] * mesh.points[c[1]] + weights[2] * mesh.points[c[2]]);
-    uv_.push_back(weights[0] * uv_[c[0]] + weights[1] * uv_[c[1]] + weights[2] * uv_[c[2]]);
-    std::vector<PointSource>& source = part_.surface.source;
-    const PointSource s = combine({&source[c[0]], &source[c[1]], &source[c[2]]}, weights);
-    source.push_back(s);
-    mesh.faces[face] = {c[0], c[1], v};
-    mesh.faces.push_back({c[1], c[2], v});
-    mesh.faces.push_back({c[2], c[0], v});
-    mesh.source_face.insert(mesh.source_face.end(), 2, mesh.source_face[face]);
-    return v;
-  }
-
-  void cut() {
-    const int n = static_cast<int>(region_.corners.size());
-    QuadLayout layout;
-    layout.node_vertex = corner_vertex_;
-    layout.node_vertex.insert(layout.node_vertex.end(), inner_vertex_.begin(), inner_vertex_.end());
-    std::map<std::pair<int, int>, int> curve_of;
-    for (const auto& nodes : edit_.quads) {
-      QuadLayout::Quad quad;
-      quad.nodes = nodes;
-      for (int i = 0; i < 4; ++i) {
-        const int a = nodes[i], b = nodes[(i + 1) % 4];
-        if (a < n && b == (a + 1) % n) continue;  // along the region's boundary
-        const auto [it, fresh] = curve_of.insert({std::minmax(a, b), static_cast<int>(layout.curves.size())});
-        if (fresh) layout.curves.push_back({layout.node_vertex[a], layout.node_vertex[b], -1});
-        quad.sides[i] = {it->second, layout.curves[it->second].start == layout.node_vertex[a]};
-      }
-      layout.quads.push_back(quad);
-    }
-    piece_ = cut_along_segments(disk(), uv_, layout);
-  }
 
   LayoutChange merge() {
     PatchedSurface& whole = mapped_.surface;
@@ -473,10 +272,7 @@ class Relayout {
       }
       point[v] = static_cast<int>(mesh.points.size());
       mesh.points.push_back(piece_.mesh.points[v]);
-      std::array<const PointSource*, 3> of{nullptr, nullptr, nullptr};
-      for (int k = 0; k < 3; ++k)
-        if (piece_.source[v].vertices[k] >= 0) of[k] = &part_.surface.source[piece_.source[v].vertices[k]];
-      out.source.push_back(combine(of, piece_.source[v].weights));
+      out.source.push_back(traced(piece_.source[v], part_.surface.source));
     }
     std::vector<std::array<Vec2, 3>> corners;
     for (std::size_t f = 0; f < whole.mesh.faces.size(); ++f) {
@@ -489,7 +285,7 @@ class Relayout {
     for (std::size_t f = 0; f < piece_.mesh.faces.size(); ++f) {
       const std::array<int, 3>& c = piece_.mesh.faces[f];
       mesh.faces.push_back({point[c[0]], point[c[1]], point[c[2]]});
-      mesh.source_face.push_back(disk().source_face[piece_.mesh.source_face[f]]);
+      mesh.source_face.push_back(part_.surface.mesh.source_face[piece_.mesh.source_face[f]]);
       out.patch.push_back(change.added[piece_.patch[f]]);
       corners.push_back({Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)});
     }
@@ -510,8 +306,6 @@ class Relayout {
   PatchRegion region_;
   PatchedPart part_;
   PatchedSurface piece_;
-  std::vector<Vec2> uv_, polygon_;
-  std::vector<int> rim_, corner_vertex_, inner_vertex_;
 };
 
 }  // namespace

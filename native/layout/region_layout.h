@@ -39,8 +39,8 @@ struct LayoutEdit {
 LayoutEdit star_edit(const PatchRegion& region, int parity);
 // Two quads instead of two: the side between them joins corners `from` and `from` + 3 of six.
 LayoutEdit chord_edit(const PatchRegion& region, int from);
-// A cube tower: the region's quads shrunk, with rings of quads around them: skin for a feature that sticks out of the region. One quad, two neighbours, or the quads around a node.
-std::optional<LayoutEdit> tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings);
+// A cube tower: the region's quads shrunk, with rings of quads around them: skin for a feature that sticks out of the region.
+LayoutEdit tower_edit(const PatchedSurface& surface, const PatchRegion& region, int rings);
 // The number of rings that makes a tower's quads about square: the depth of the region, from its boundary to the point farthest from it, over the mean length of its boundary sides.
 int tower_height(const PatchedSurface& surface, const PatchRegion& region);
 

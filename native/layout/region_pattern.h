@@ -17,7 +17,8 @@ std::vector<int> regular_quads(const PatchedSurface& surface, const PatchRegion&
 // Pairs of corners, each in both orders, that a side outside the region joins: joined inside it as well, they would be joined twice. The region's own sides are left out.
 std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, const PatchRegion& region);
 
-// Quads that fill the region, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where they cannot. Throws Error{InvalidInput} for an odd number of boundary sides.
+// Quads that fill the region, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where they cannot. Throws Error{InvalidInput} for an
+// odd number of boundary sides.
 LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region);
 
 // Given quads for the region, numbered as in LayoutEdit. Throws Error{InvalidInput} if they do not fill it.

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "layout/face_filling.h"
 #include "layout/region_pattern.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
@@ -61,24 +62,29 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
   // Curves are drawn on a level, which is the farther from the surface the coarser it is.
   options.reach = kReach;
   DrawnLayout drawn = make_layout(disk, strokes, options, progress);
-  require_quads(drawn);
-  if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
-  const PatchLayout& layout = drawn.layout;
+  const std::vector<Vec3>& points = drawn.layout.mesh.points;
+  const int corners = static_cast<int>(region.corners.size());
+  std::vector<int> number;  // per node of the layout; new ones from `corners` on
+  FaceFillingOptions filling;
+  const std::vector<int> wanted = regular_quads(surface, region);
+  int inner_nodes = 0;
+  for (const int v : drawn.layout.nodes) {
+    const auto at = std::find(corner.begin(), corner.end(), points[v]);
+    number.push_back(at == corner.end() ? corners + inner_nodes++ : static_cast<int>(at - corner.begin()));
+    filling.quads_at.push_back(at == corner.end() ? 0 : wanted[at - corner.begin()]);
+  }
+  std::vector<int> node_at(corners, -1);
+  for (std::size_t n = 0; n < number.size(); ++n)
+    if (number[n] < corners) node_at[number[n]] = static_cast<int>(n);
+  for (const auto& [a, b] : joined_outside(surface, region)) filling.joined.insert({node_at[a], node_at[b]});
   DrawnEdit out;
+  out.piece = fill_faces(drawn, filling);
+  if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
+  for (int n = static_cast<int>(number.size()); n < out.piece.node_count; ++n) number.push_back(corners + inner_nodes++);
   out.edit.patches = region.patches;
   out.edit.start = region.boundary[0];
-  const int corners = static_cast<int>(region.corners.size());
-  std::vector<int> number;
-  for (const int v : layout.nodes) {
-    const auto at = std::find_if(options.boundary_nodes.begin(), options.boundary_nodes.end(), [&](int p) { return disk.points[p] == layout.mesh.points[v]; });
-    number.push_back(at == options.boundary_nodes.end() ? corners + out.edit.inner_nodes++ : static_cast<int>(at - options.boundary_nodes.begin()));
-  }
-  for (const PatchLayout::Face& face : layout.faces) {
-    std::array<int, 4> quad;
-    for (int i = 0; i < 4; ++i) quad[i] = number[layout.start(face.cycles[0][i])];
-    out.edit.quads.push_back(quad);
-  }
-  out.piece = to_patched_surface(layout);
+  out.edit.inner_nodes = inner_nodes;
+  for (const std::array<int, 4>& nodes : out.piece.nodes) out.edit.quads.push_back({number[nodes[0]], number[nodes[1]], number[nodes[2]], number[nodes[3]]});
   return out;
 }
 
@@ -90,15 +96,14 @@ LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, c
   } else if (pattern.kind == RegionPattern::Kind::Template) {
     edit = template_edit(region, pattern.quads);
   } else {
-    std::optional<LayoutEdit> tower = tower_edit(surface, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, region)));
-    if (!tower) throw Error(ErrorCode::InvalidInput, "no tower stands on its quads: it takes one, two neighbours, or all around a node");
-    edit = std::move(*tower);
+    edit = tower_edit(surface, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, region)));
   }
   if (const std::string defect = find_edit_defect(surface, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
   return edit;
 }
 
-// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every time.
+// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every
+// time.
 ChartMesh held_on_lines(ChartMesh charts) {
   const auto on_line = [](double x) { return x == std::round(x); };
   for (std::size_t v = 0; v < charts.uv.size(); ++v)

@@ -20,7 +20,7 @@ std::vector<int> ConvexMap::side_chords(const std::vector<int>& faces, const std
   on_sides_.resize(mesh_.points.size(), 0);
   in_disk_.resize(mesh_.faces.size(), 0);
   for (std::size_t i = 0; i < sides.size(); ++i)
-    for (const int v : sides[i].points) on_sides_[v] |= std::uint64_t{1} << i;
+    for (const int v : sides[i].points) on_sides_[v] |= std::uint64_t{1} << (i % 64);
   for (const int f : faces) in_disk_[f] = 1;
   std::vector<int> chords;
   for (const int f : faces)

@@ -36,7 +36,7 @@ class ConvexMap {
 
   const TriangleSurface& mesh_;
   std::vector<int> index_;  // per point of the mesh: its row while a disk is mapped, else -1
-  std::vector<std::uint64_t> on_sides_;  // per point of the mesh: the sides of the disk at hand that hold it, as bits
+  std::vector<std::uint64_t> on_sides_;  // per point of the mesh: the sides of the disk at hand that hold it, as bits. Beyond 64 some share one: edges are split that need not be
   std::vector<char> in_disk_;            // per face of the mesh
 };
 

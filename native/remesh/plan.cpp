@@ -213,11 +213,7 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   const std::optional<PatchRegion> region = make_region(layout.layout(), patches, start);
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
   const std::string kind = entry.at("kind").text();
-  if (kind == "add_cubes") {
-    std::optional<LayoutEdit> edit = tower_edit(layout.layout(), *region, static_cast<int>(entry.at("height").integer(1, kMostCubes)));
-    if (!edit) entry.refuse("has quads on which no tower stands: it takes one, two neighbours, or all around a node");
-    return std::move(*edit);
-  }
+  if (kind == "add_cubes") return tower_edit(layout.layout(), *region, static_cast<int>(entry.at("height").integer(1, kMostCubes)));
   if (kind != "repatch") entry.at("kind").refuse("must be \"repatch\" or \"add_cubes\"");
   LayoutEdit edit;
   edit.patches = region->patches;

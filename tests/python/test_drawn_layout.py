@@ -59,27 +59,62 @@ def test_a_layout_of_quads_is_the_base_of_a_remesh():
     assert set(zip(level["root"], level["path"])) == {(root, path) for root in range(6) for path in range(16, 32)}
 
 
+def cube_diagonal():
+    """Across a face of the cube of cube_strokes()."""
+    a, b = np.array([1, -1, -1.0]), np.array([1, 1, 1.0])
+    line = a + np.linspace(0, 1, 9)[:, None] * (b - a)
+    return {"points": line / np.linalg.norm(line, axis=1, keepdims=True)}
+
+
+def test_faces_of_more_than_four_sides_are_filled():
+    mesh = sphere(12)
+    strokes = cube_strokes(np.random.default_rng(1), 0.01)[1:]
+    checked = _native.make_layout(*triangles(mesh), strokes)
+    drawn = _native.layout_plan(*triangles(mesh), strokes)
+    for result in (checked, drawn):
+        assert result["problems"] == []
+        assert sorted(zip(map(len, result["faces"]), result["quads"])) == [(4, 1)] * 4 + [(6, 2)]
+    made = _native.remesh(*mesh, {"vertices": 2000, "plan": drawn["plan"]})
+    assert len(made.hierarchy.level("N0")["offsets"]) - 1 == 6 and made.hierarchy.check() == []
+
+
 def test_a_layout_of_other_faces_is_no_base():
-    strokes = cube_strokes(np.random.default_rng(1), 0.01)
-    drawn = _native.layout_plan(*triangles(sphere(12)), strokes[1:])
-    assert drawn["plan"] == "" and [p["kind"] for p in drawn["problems"]] == ["many_sides"]
-    assert _native.make_layout(*triangles(sphere(12)), strokes[1:])["problems"] == []
+    strokes = [*cube_strokes(np.random.default_rng(1), 0.01), cube_diagonal()]
+    for make in (_native.layout_plan, _native.make_layout):
+        drawn = make(*triangles(sphere(12)), strokes)
+        assert drawn.get("plan", "") == "" and [p["kind"] for p in drawn["problems"]] == ["odd_sides"] * 2
+        assert sorted(zip(map(len, drawn["faces"]), drawn["quads"])) == [(3, 0)] * 2 + [(4, 1)] * 5
+
+
+def region_plan(mesh):
+    plan = json.loads(_native.layout_plan(*triangles(mesh), cube_strokes(np.random.default_rng(1), 0.01))["plan"])
+    plan["operations"] = [{"level": 1, "quads": ["0.0", "0.1", "0.2", "0.3"], "curves": []}]
+    return plan
+
+
+def test_a_region_is_filled_where_no_curves_are():
+    mesh = sphere(12)
+    made = _native.remesh(*mesh, {"levels": 2, "plan": json.dumps(region_plan(mesh))}).hierarchy
+    assert made.check() == [] and made.operation_count == 1
+    assert made.operation(0)["corners"] == 8 and len(made.operation(0)["new_quads"]) >= 4
 
 
 def test_problems_of_a_region_come_with_their_places():
     mesh = sphere(12)
-    plan = json.loads(_native.layout_plan(*triangles(mesh), cube_strokes(np.random.default_rng(1), 0.01))["plan"])
-    plan["operations"] = [{"level": 1, "quads": ["0.0", "0.1", "0.2", "0.3"], "curves": []}]
+    plan = region_plan(mesh)
+    # Between corners of the region that are opposite one another: two faces of five sides.
+    corners = plan["base"]["quads"][0]
+    plan["operations"][0]["curves"] = [{"points": [plan["base"]["nodes"][corners[0]], plan["base"]["nodes"][corners[2]]]}]
     with pytest.raises(_native.LayoutError) as caught:
         _native.remesh(*mesh, {"levels": 2, "plan": json.dumps(plan)})
     assert isinstance(caught.value, _native.InvalidInput)
     message, problems = caught.value.args
-    assert "8 sides" in message and [p["kind"] for p in problems] == ["many_sides"] and len(problems[0]["points"]) > 8
+    assert "5 sides" in message and [p["kind"] for p in problems] == ["odd_sides"] * 2 and len(problems[0]["points"]) > 5
 
 
 def check_layout(result, points, faces):
     size = np.linalg.norm(np.ptp(points, axis=0))
-    assert set(result) == {"nodes", "curves", "faces", "problems"}
+    assert set(result) == {"nodes", "curves", "faces", "quads", "problems"} and len(result["quads"]) == len(result["faces"])
     assert result["nodes"].dtype == np.float64 and result["nodes"].shape[1:] == (3,)
     used = []
     for curve in result["curves"]:

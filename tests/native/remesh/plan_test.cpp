@@ -150,6 +150,24 @@ TEST_P(DrawnRegions, AreLaidOutAnewAndNothingElseChanges) {
   EXPECT_EQ(encode_hierarchy(h, "{}"), encode_hierarchy(again.hierarchy, "{}"));
 }
 
+TEST_P(DrawnRegions, FacesOfMoreThanFourSidesAreFilled) {
+  for (const int kept : {0, 3}) {
+    Json few = operation_;
+    while (static_cast<int>(few["curves"].size()) > kept) few["curves"].erase(0);
+    plan_["operations"] = Json::array({few});
+    const RemeshResult made = run(soup_, options_, plan_.dump());
+    ASSERT_EQ(made.hierarchy.operation_count(), 1);
+    EXPECT_EQ(made.hierarchy.operation(0).repatch.removed.size(), 4u);
+    expect_changed_in_places(plain_.hierarchy, made.hierarchy, 2);
+    // Nothing drawn: as regular as it was.
+    if (kept == 0) {
+      EXPECT_EQ(made.hierarchy.operation(0).roots.size(), 4u);
+    }
+    const RemeshResult again = run(soup_, options_, made.plan);
+    EXPECT_EQ(encode_hierarchy(made.hierarchy, "{}"), encode_hierarchy(again.hierarchy, "{}"));
+  }
+}
+
 TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
   const auto problems = [&](const Json& operation) {
     plan_["operations"] = Json::array({operation});
@@ -160,13 +178,17 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
     }
     return std::vector<LayoutProblem>();
   };
-  Json few = operation_;
-  few["curves"].erase(0);
-  const auto many_sides = problems(few);
-  ASSERT_EQ(many_sides.size(), 1u);
-  EXPECT_STREQ(name_of(many_sides[0].kind), "many_sides");
+  // To the middle of a side instead of a corner: faces of three and five sides.
+  Json odd = operation_;
+  const Vec3 between = corners_of(plain_.hierarchy, 2).at({removed_[0], 1});
+  odd["curves"][0]["points"][0] = {between.x(), between.y(), between.z()};
+  const auto odd_sides = problems(odd);
+  ASSERT_EQ(odd_sides.size(), 2u);
   const SurfaceDistanceQuery query(plain_.repaired.points, plain_.repaired.faces);
-  for (const Vec3& p : many_sides[0].where) EXPECT_LE(std::sqrt(query.closest(p).squared_distance), 1e-6);  // in the input's space
+  for (const LayoutProblem& p : odd_sides) {
+    EXPECT_STREQ(name_of(p.kind), "odd_sides");
+    for (const Vec3& x : p.where) EXPECT_LE(std::sqrt(query.closest(x).squared_distance), 1e-6);  // in the input's space
+  }
   Json short_one = operation_;
   short_one["curves"][0]["points"][0] = short_one["curves"][0]["points"][1];
   for (int i = 0; i < 3; ++i)
