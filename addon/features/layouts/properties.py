@@ -19,7 +19,7 @@ KINDS = (
 REGION_LAYOUTS = (
     ("DRAWN", "Drawn Curves", "The new quads are those that are drawn"),
     ("AUTOMATIC", "Automatic", "The new quads are found from the region's boundary, so that its corners become regular"),
-    ("CUBES", "Cubes", "A tower of cubes grows skin on the region: on one quad, on two neighbours, or on all around a vertex"),
+    ("CUBES", "Cubes", "A tower of cubes grows skin on the region: rings of quads along its boundary, and its own quads on top"),
     ("COPY", "Copy", "The new quads are arranged as another operation of the hierarchy has them; the region has as many sides as that one's"),
 )
 class RegionProperties:
