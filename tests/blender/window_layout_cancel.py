@@ -51,7 +51,7 @@ def steps():
     yield 2
     before = state()
     assert before[4] == "PAINT_GPENCIL" and len(before[2]) == 12
-    for delay in (1.0, 0.1, 0.5):
+    for delay in (1.0, 0.1, 0.3):
         with bpy.context.temp_override(**stepper.view()):
             assert bpy.ops.hybrid_mesh.remesh_layout("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
         yield delay

@@ -11,10 +11,20 @@ from ...bridge import arrays, meshes, strokes, transfer
 from ...core import plans, regions
 from ...core import settings as core
 from ...core.native import NativeMissing, explain, native
+from ...core.tasks import Chain, Task
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
 from ..remesh.properties import CUBES, core_settings
 from . import drawing, properties
+
+
+class LayoutProblemsError(ValueError):
+    """A drawn layout that cannot be remeshed. result: what the native module made of it."""
+
+    def __init__(self, result):
+        problems = result["problems"]
+        super().__init__(f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}")
+        self.result = result
 
 
 class _OnSurface:
@@ -130,13 +140,14 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
         settings = core_settings(context.scene.hybrid_mesh)
         source = meshes.read_source(surface, context.evaluated_depsgraph_get(), transfer.collect)
         layout, drawn = drawing.read_drawn(context, surface)
-        with _waiting(context):
-            result = native().layout_plan(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
-        if result["problems"]:
-            _show_check(self, context, surface, layout, drawn, result, source)
-            _push_marks()
-            raise ValueError(_refusal(result["problems"]))
-        return [source_task(surface.name, source, settings, result["plan"])]
+        name, given, snap = surface.name, drawing.for_native(drawn), layout.hybrid_mesh_layout.snap
+
+        def remesh(result):
+            if result["problems"]:
+                raise LayoutProblemsError(result)
+            return source_task(name, source, settings, result["plan"]).start()
+
+        return [Task(name, lambda: Chain(native().start_layout_plan(*_triangles(source), given, snap), remesh), (source, settings))]
 
     def finish(self, context, results):
         _to_object_mode(context)
@@ -149,7 +160,13 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
             drawing.hide(context, surface)
 
     def failed(self, context, task, error):
-        _show_failure(context, task.name, error)
+        surface = context.scene.objects.get(task.name)
+        layout = properties.layout_of(surface, context.scene) if surface is not None else None
+        if isinstance(error, LayoutProblemsError) and layout is not None:
+            _show_check(self, context, surface, layout, strokes.read(layout, context.scene.frame_current), error.result, task.note[0])
+            _push_marks()
+        else:
+            _show_failure(context, task.name, error)
 
     def hides_source(self, context):
         return context.scene.hybrid_mesh.hide_source
@@ -303,10 +320,6 @@ def _diagonal(points):
 
 def _count(number, things):
     return f"{number} {things.removesuffix('s') if number == 1 else things}"
-
-
-def _refusal(problems):
-    return f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}"
 
 
 def _show_check(operator, context, surface, layout, drawn, result, source):
