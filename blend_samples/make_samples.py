@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the samples of this folder anew: blender --background --factory-startup --python make_samples.py -- [SCANS]
+"""Makes the samples of this folder anew: blender --background --factory-startup --python make_samples.py -- [--only NAME...] [SCANS]
 
-SCANS is a folder with bunny_holes.ply and buddha_10k.ply (see README.md); without it only the generated samples are made."""
+SCANS is a folder with bunny_holes.ply and buddha_10k.ply (see README.md); without it only the generated samples are made. The layout that is
+drawn on a head is drawn with the add-on in build/stage, which scripts/build makes."""
 
+import argparse
 import os
 import struct
 import sys
@@ -13,6 +15,10 @@ import numpy
 from mathutils import Vector, noise
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+import head_shape  # noqa: E402
+
+NECK = -1.40  # where the head's neck ends
 
 
 def read_ply(path):
@@ -62,19 +68,23 @@ def add(name, mesh, material="Clay", color=(0.55, 0.42, 0.33, 1)):
     return obj
 
 
+def thin_out(obj, ratio):
+    bpy.context.view_layer.objects.active = obj
+    modifier = obj.modifiers.new("Decimate", "DECIMATE")
+    modifier.ratio = ratio
+    modifier.use_collapse_triangulate = True
+    with bpy.context.temp_override(object=obj, active_object=obj):
+        bpy.ops.object.modifier_apply(modifier=modifier.name)
+
+
 def scan(name, path, ratio, axes):
     """A scan, thinned out, two units high, standing on the ground. axes: rows of the rotation that sets it upright."""
     points, faces = read_ply(path)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(points.tolist(), [], faces.tolist())
     obj = add(name, mesh)
-    bpy.context.view_layer.objects.active = obj
     if ratio < 1:
-        modifier = obj.modifiers.new("Decimate", "DECIMATE")
-        modifier.ratio = ratio
-        modifier.use_collapse_triangulate = True
-        with bpy.context.temp_override(object=obj, active_object=obj):
-            bpy.ops.object.modifier_apply(modifier=modifier.name)
+        thin_out(obj, ratio)
     places = numpy.array([vertex.co for vertex in mesh.vertices])
     places = places @ numpy.array(axes, dtype=float).T
     low, high = places.min(0), places.max(0)
@@ -164,19 +174,82 @@ def transforms():
     return star
 
 
+def head(name, triangles, closed):
+    """A head of irregular triangles as a scanner gives them. Its neck ends in a boundary loop, or in a rounded cap."""
+    low, high, step = numpy.array([-1.0, -1.3, NECK]), [1.0, 1.2, 1.2], 0.02
+
+    def distance(points):
+        away = head_shape.head(points)
+        return head_shape.without(away, points[:, 2] - NECK, 0.1) if closed else away
+
+    points, faces = head_shape.zero_set(distance, low - [0, 0, 4 * step if closed else 0], high, step)
+    points = head_shape.evened(distance, points, faces, step)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points.tolist(), [], faces.tolist())
+    obj = add(name, mesh)
+    thin_out(obj, triangles / len(faces))
+    for polygon in mesh.polygons:
+        polygon.use_smooth = True
+    return obj
+
+
+def six_quads(obj):
+    """Draws the edges of a cube on the closed head: face, back, two sides with an ear each, crown and neck."""
+    sys.path.insert(0, os.path.join(HERE, os.pardir, "build", "stage"))
+    import hybrid_mesh
+    from hybrid_mesh.bridge import strokes
+    from hybrid_mesh.features.layouts import properties
+
+    hybrid_mesh.register()
+    bpy.ops.hybrid_mesh.draw_layout()
+    layout = properties.layout_of(obj, bpy.context.scene)
+    top = [(-0.42, -0.52, 0.72), (0.42, -0.52, 0.72), (0.42, 0.72, 0.72), (-0.42, 0.72, 0.72)]
+    bottom = [(-0.36, 0.00, -1.36), (0.36, 0.00, -1.36), (0.34, 0.55, -1.36), (-0.34, 0.55, -1.36)]
+    ends = [(corners[k], corners[(k + 1) % 4]) for corners in (top, bottom) for k in range(4)] + list(zip(top, bottom))
+    for number, (start, end) in enumerate(ends):
+        line = []
+        for t in numpy.linspace(0, 1, 25):
+            place = (1 - t) * numpy.array(start) + t * numpy.array(end)
+            # Seen from the head's axis; between jaw and ear the side's lines go around, as a hand would draw them.
+            axis = numpy.array([0, 0.1 + 0.15 * max(0, -place[2]), 0.85 * place[2]])
+            if number > 7:
+                place = place + [numpy.sign(start[0]) * 0.25 * numpy.sin(numpy.pi * t), 0, 0]
+            direction = (place - axis) / numpy.linalg.norm(place - axis)
+            hit, there, _, _ = obj.ray_cast(Vector(axis + 4 * direction), Vector(-direction))
+            assert hit
+            line.append(there)
+        strokes.write(layout, layout.data.layers.active, bpy.context.scene.frame_current, [numpy.array(line)])
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def main():
-    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    if arguments:
+    parser = argparse.ArgumentParser(prog="make_samples.py")
+    parser.add_argument("scans", nargs="?", help="folder of bunny_holes.ply and buddha_10k.ply")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="make these and no others")
+    arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
+
+    def wanted(name):
+        if arguments.only and name not in arguments.only:
+            return False
         start()
-        bunny = scan("bunny", os.path.join(arguments[0], "bunny_holes.ply"), 0.45, [[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+        return True
+
+    if arguments.scans and wanted("bunny"):
+        bunny = scan("bunny", os.path.join(arguments.scans, "bunny_holes.ply"), 0.45, [[1, 0, 0], [0, 0, 1], [0, -1, 0]])
         write_ply(os.path.join(HERE, "bunny.ply"), bunny.data)
         finish("bunny", bunny)
-        start()
-        finish("buddha", scan("buddha", os.path.join(arguments[0], "buddha_10k.ply"), 1, numpy.eye(3)))
-    start()
-    finish("knot", knot("knot"))
-    start()
-    finish("transforms", transforms())
+    if arguments.scans and wanted("buddha"):
+        finish("buddha", scan("buddha", os.path.join(arguments.scans, "buddha_10k.ply"), 1, numpy.eye(3)))
+    if wanted("knot"):
+        finish("knot", knot("knot"))
+    if wanted("transforms"):
+        finish("transforms", transforms())
+    if wanted("head"):
+        finish("head", head("head", 18_000, closed=False))
+    if wanted("head_layout"):
+        drawn_on = head("head", 12_000, closed=True)
+        six_quads(drawn_on)
+        finish("head_layout", drawn_on)
 
 
 main()

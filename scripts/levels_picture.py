@@ -24,8 +24,11 @@ GREY = numpy.array([0.72, 0.72, 0.70])
 CLAY = numpy.array([0.56, 0.47, 0.40])
 
 
-def corner_distances(points, corners, offsets, height):
-    """For each corner its distance to the lines of up to four edges of its face, in line widths of that face."""
+def corner_distances(points, corners, offsets, height, drawn=None, even=False):
+    """For each corner its distance to the lines of up to four edges of its face, in line widths of that face.
+
+    drawn: whether there is a line at the edge from each corner to the next; even: lines as wide on small faces as on large ones.
+    """
     distances = numpy.full((len(corners), 4), 1e3, dtype=numpy.float32)
     counts = numpy.diff(offsets)
     for count in (3, 4):
@@ -36,17 +39,27 @@ def corner_distances(points, corners, offsets, height):
         p = points[corners[places]]
         edges = numpy.roll(p, -1, axis=1) - p
         lengths = numpy.linalg.norm(edges, axis=2)
-        width = numpy.minimum(LINE * height, 0.07 * lengths.mean(1))
+        width = numpy.full(len(faces), LINE * height) if even else numpy.minimum(LINE * height, 0.07 * lengths.mean(1))
         for k in range(count):
             along = edges[:, k] / numpy.maximum(lengths[:, k], 1e-12)[:, None]
             away = p - p[:, k : k + 1]
             away = away - (away * along[:, None]).sum(2, keepdims=True) * along[:, None]
             distances[places, k] = numpy.linalg.norm(away, axis=2) / width[:, None]
+            if drawn is not None:
+                distances[places[~drawn[places[:, k]]], k] = 1e3
     return distances
 
 
-def display_mesh(name, mesh, height, lines=True):
-    """A copy of a mesh with what the material needs: distances to edges and a colour a patch, or neither."""
+def pastels(numbers):
+    """A colour for each number."""
+    return PASTELS[(numpy.asarray(numbers, dtype=numpy.int64) * 2654435761 % 4294967296) // 7 % len(PASTELS)]
+
+
+def display_mesh(name, mesh, height, lines=True, colors=None, drawn=None):
+    """A copy of a mesh with what the material needs: distances to edges and a colour a patch, or neither.
+
+    colors: (faces, 3) to be used instead; drawn: see corner_distances, with lines of one width.
+    """
     copy = bpy.data.meshes.new(name)
     points = numpy.empty(3 * len(mesh.vertices), dtype=numpy.float32)
     mesh.vertices.foreach_get("co", points)
@@ -55,15 +68,15 @@ def display_mesh(name, mesh, height, lines=True):
     totals = numpy.empty(len(mesh.polygons), dtype=numpy.int32)
     mesh.polygons.foreach_get("loop_total", totals)
     offsets = numpy.concatenate([[0], numpy.cumsum(totals)])
-    patch = numpy.zeros(len(mesh.polygons), dtype=numpy.int32)
-    if lines and "patch" in mesh.attributes:
+    if colors is None and lines and "patch" in mesh.attributes:
+        patch = numpy.zeros(len(mesh.polygons), dtype=numpy.int32)
         mesh.attributes["patch"].data.foreach_get("value", patch)
-        colors = PASTELS[(patch * 2654435761 % 4294967296) // 7 % len(PASTELS)]
-    else:
-        colors = numpy.repeat((GREY if lines else CLAY)[None], len(patch), axis=0)
+        colors = pastels(patch)
+    elif colors is None:
+        colors = numpy.repeat((GREY if lines else CLAY)[None], len(mesh.polygons), axis=0)
     copy.from_pydata(points.reshape(-1, 3).tolist(), [], [corners[a:b].tolist() for a, b in zip(offsets[:-1], offsets[1:])])
     copy.polygons.foreach_set("use_smooth", [True] * len(copy.polygons))
-    edges = corner_distances(points.reshape(-1, 3).astype(float), corners, offsets, height)
+    edges = corner_distances(points.reshape(-1, 3).astype(float), corners, offsets, height, drawn, drawn is not None)
     for label, values in (
         ("edges", edges if lines else numpy.full_like(edges, 1e3)),
         ("tint", numpy.repeat(numpy.concatenate([colors, numpy.ones((len(colors), 1))], axis=1), totals, axis=0)),

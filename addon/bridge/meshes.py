@@ -6,6 +6,7 @@ from typing import Any
 
 import bmesh
 import bpy
+import mathutils
 import numpy
 
 from .. import compat
@@ -144,6 +145,42 @@ def selected_faces(obj):
         faces = bmesh.from_edit_mesh(obj.data).faces
         return numpy.fromiter((face.select for face in faces), bool, len(faces))
     return values_of(obj.data.polygons, "select", 1, bool)
+
+
+def selected_vertices(obj):
+    """(points in world space (n, 3), whether each lies on a boundary (n,)) of the vertices that are selected in a mesh object in Edit Mode."""
+    chosen = [vertex for vertex in bmesh.from_edit_mesh(obj.data).verts if vertex.select]
+    points = numpy.array([vertex.co for vertex in chosen], dtype=numpy.float64).reshape(-1, 3)
+    return transformed(points, world_matrix(obj.matrix_world)), numpy.array([vertex.is_boundary for vertex in chosen], dtype=bool)
+
+
+def quad_corners(obj, chosen):
+    """Vertices of the faces that `chosen` (a bool a face) names, a row a face, from the first corner of its quad on as the hierarchy has it, whatever the mesh's
+    order is; None where one of them has not four corners or the mesh has no map of its patches. In Edit Mode of the mesh that is edited."""
+    edited = obj.mode == "EDIT"
+    graph = bmesh.from_edit_mesh(obj.data) if edited else bmesh.new()
+    try:
+        if not edited:
+            graph.from_mesh(obj.data)
+        graph.verts.index_update()
+        layer = graph.loops.layers.uv.get(PATCH_UV)
+        faces = [face for face, is_chosen in zip(graph.faces, chosen) if is_chosen]
+        if layer is None or any(len(face.loops) != 4 for face in faces):
+            return None
+        return [_from_first_corner(face, layer) for face in faces]
+    finally:
+        if not edited:
+            graph.free()
+
+
+def _from_first_corner(face, layer):
+    # Quads lie upright in the map, as in their root quad's square.
+    middle = sum((loop[layer].uv.copy() for loop in face.loops), mathutils.Vector((0, 0))) / 4
+    found = [-1] * 4
+    for loop in face.loops:
+        right, up = (a > b for a, b in zip(loop[layer].uv, middle))
+        found[(0, 3, 1, 2)[2 * right + up]] = loop.vert.index
+    return found
 
 
 def mesh_arrays(mesh):

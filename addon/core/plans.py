@@ -8,6 +8,7 @@ FORMAT = "hybrid-mesh plan"
 VERSION = 1
 FITS = ("tight", "drawn")
 MAXIMUM_BUFFER_RINGS = 8
+MAXIMUM_CUBES = 1000
 
 
 class PlanError(ValueError):
@@ -65,28 +66,64 @@ def quad_addresses(level, roots, paths, level_of_root):
     return [".".join(map(str, quad)) for quad in sorted(quads)]
 
 
-def repatch_operation(level, addresses, strokes, buffer_rings):
-    """The operation that lays out the quads at `addresses` anew along drawn curves.
+def repatch_operation(level, addresses, layout, buffer_rings):
+    """The operation that lays out the quads at `addresses` anew.
 
-    strokes: (points, fit) with (n, 3) points in world space and fit 'tight' or 'drawn'; buffer_rings: 0..8.
+    layout: of drawn_layout(), automatic_layout(), cubes_layout() or template_layout(); buffer_rings: 0..8.
     """
-    quads, curves = [str(one) for one in addresses], []
+    quads = [str(one) for one in addresses]
     if not quads:
         raise PlanError("no quads are given")
-    if isinstance(level, bool) or not isinstance(level, int) or level < 0:
-        raise PlanError(f"the level must be a whole number of at least 0, not {level!r}")
-    if isinstance(buffer_rings, bool) or not isinstance(buffer_rings, int) or not 0 <= buffer_rings <= MAXIMUM_BUFFER_RINGS:
-        raise PlanError(f"the buffer rings must be a whole number from 0 to {MAXIMUM_BUFFER_RINGS}, not {buffer_rings!r}")
+    _whole("level", level, 0, None)
+    _whole("buffer rings", buffer_rings, 0, MAXIMUM_BUFFER_RINGS)
+    return {"level": level, "quads": quads, **layout, "buffer_rings": buffer_rings}
+
+
+def drawn_layout(strokes):
+    """New quads whose sides are drawn. strokes: (points, fit) with (n, 3) points in world space and fit 'tight' or 'drawn'."""
+    curves = []
     for number, (points, fit) in enumerate(strokes):
-        rows = [[float(value) for value in point] for point in points]
-        if any(len(row) != 3 or not all(map(math.isfinite, row)) for row in rows):
-            raise PlanError(f"stroke {number} has points that are not three finite numbers")
         if fit not in FITS:
             raise PlanError(f"the fit of stroke {number} must be one of {', '.join(FITS)}, not {fit!r}")
-        curves.append({"points": rows, "fit": fit})
+        curves.append({"points": _points(points, f"stroke {number} has points"), "fit": fit})
     if not curves:
         raise PlanError("no curves are given")
-    return {"level": level, "quads": quads, "curves": curves, "buffer_rings": buffer_rings}
+    return {"curves": curves}
+
+
+def automatic_layout():
+    """New quads that fill the region so that its corners become regular."""
+    return {"layout": "automatic"}
+
+
+def cubes_layout(height=0):
+    """A tower of so many cubes on the region; 0: as many as make its sides square."""
+    _whole("height", height, 0, MAXIMUM_CUBES)
+    return {"layout": "cubes", "height": height}
+
+
+def template_layout(address, side, new_quads):
+    """Quads as another region got them. `side` of the quad at `address` is where the region's corner 0 begins.
+
+    new_quads: rows of four nodes, 0, 1, ... the corners of the region's boundary, counter-clockwise, then the new ones.
+    """
+    _whole("start's side", side, 0, 3)
+    quads = [[int(node) for node in quad] for quad in new_quads]
+    if not quads or any(len(quad) != 4 or min(quad) < 0 for quad in quads):
+        raise PlanError("a template's new quads must be rows of four nodes")
+    return {"layout": "template", "start": [str(address), side], "new_quads": quads}
+
+
+def boundary_plan(nodes=None, cubes=0):
+    """A plan's text whose base is a chain of cubes on four points of a disk's boundary.
+
+    nodes: four points in world space, in any order; None: they are found. cubes: 0 for as many as make their sides square.
+    """
+    _whole("cubes", cubes, 0, MAXIMUM_CUBES)
+    points = "automatic" if nodes is None else _points(nodes, "the boundary has nodes")
+    if nodes is not None and len(points) != 4:
+        raise PlanError(f"a base on a boundary has four nodes there, not {len(points)}")
+    return to_text({"format": FORMAT, "version": VERSION, "base": {"boundary_nodes": points, "cubes": cubes}})
 
 
 def parse(text):
@@ -112,3 +149,16 @@ def with_operation(plan_text, operation):
     """The plan with an operation after those that it has, as text."""
     plan = parse(plan_text)
     return to_text({**plan, "operations": [*plan.get("operations", []), operation]})
+
+
+def _whole(name, value, least, most):
+    if isinstance(value, bool) or not isinstance(value, int) or value < least or (most is not None and value > most):
+        bounds = f"of at least {least}" if most is None else f"from {least} to {most}"
+        raise PlanError(f"the {name} must be a whole number {bounds}, not {value!r}")
+
+
+def _points(points, whose):
+    rows = [[float(value) for value in point] for point in points]
+    if any(len(row) != 3 or not all(map(math.isfinite, row)) for row in rows):
+        raise PlanError(f"{whose} that are not three finite numbers")
+    return rows

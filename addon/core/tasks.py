@@ -16,6 +16,54 @@ class Task:
     note: Any = None  # what the operator wants to know again when the result is there
 
 
+class Chain:
+    """Two native jobs as one, which is used as a job is.
+
+    job: the first one; go_on(its result) starts the second one, or raises what then is the failure; share: of the progress that is the first one's.
+    """
+
+    def __init__(self, job, go_on, share=0.2):
+        self._job, self._go_on, self._share = job, go_on, share
+        self._second = self._cancelled = False
+        self._error = None
+
+    @property
+    def done(self):
+        if not self._second and not self._cancelled and self._error is None and self._job.done:
+            try:
+                self._job = self._go_on(self._job.result())
+                self._second = True
+            except Exception as error:  # result() raises it.
+                self._error = error
+        return self._error is not None or ((self._second or self._cancelled) and self._job.done)
+
+    @property
+    def progress(self):
+        return self._share + (1 - self._share) * self._job.progress if self._second else self._share * self._job.progress
+
+    @property
+    def stage(self):
+        return self._job.stage
+
+    def cancel(self):
+        self._cancelled = True
+        self._job.cancel()
+
+    def wait(self, timeout_s=None):
+        """Waits until both have ended or the time is over; returns `done`. With a timeout it may return between the two."""
+        while not self.done:
+            self._job.wait(timeout_s)
+            if timeout_s is not None:
+                break
+        return self.done
+
+    def result(self):
+        self.wait()
+        if self._error is not None:
+            raise self._error
+        return self._job.result()
+
+
 class TaskRun:
     """Tasks one after another, each over all cores."""
 

@@ -90,33 +90,63 @@ py::dict to_dict(const DrawnLayout& drawn) {
   return result;
 }
 
-DrawnLayout drawn_layout(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
-  const PolygonSoup soup = soup_from_faces(points, faces);
-  std::vector<DrawnStroke> drawn;
-  for (const auto& s : strokes) drawn.push_back(stroke_from_dict(s, drawn.size()));
+// What strokes are drawn on, and how they become a layout: what Python gives, without Python.
+struct Drawing {
+  PolygonSoup soup;
+  std::vector<DrawnStroke> strokes;
   DrawnLayoutOptions options;
-  options.snap = snap;
-  return run_interruptibly([&](Context& context) {
-    RepairReport report;
-    const Progress progress(context);
-    return make_layout(repair(soup, RepairOptions(), report, progress.part(0, 0.2)), drawn, options, progress.part(0.2, 1));
-  });
+};
+
+Drawing drawing_from_python(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
+  Drawing drawing{soup_from_faces(points, faces), {}, {}};
+  for (const auto& s : strokes) drawing.strokes.push_back(stroke_from_dict(s, drawing.strokes.size()));
+  drawing.options.snap = snap;
+  return drawing;
+}
+
+DrawnLayout make_layout(const Drawing& drawing, Context& context) {
+  RepairReport report;
+  const Progress progress(context);
+  progress.stage("layout");
+  return make_layout(repair(drawing.soup, RepairOptions(), report, progress.part(0, 0.2)), drawing.strokes, drawing.options, progress.part(0.2, 1));
 }
 
 py::dict make_layout_from_arrays(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
-  return to_dict(drawn_layout(points, faces, strokes, snap));
+  const Drawing drawing = drawing_from_python(points, faces, strokes, snap);
+  return to_dict(run_interruptibly([&](Context& context) { return make_layout(drawing, context); }));
+}
+
+// A layout with its faces filled as the base domain of a plan: JSON text, empty if there are problems.
+struct PlannedLayout {
+  DrawnLayout drawn;
+  std::string plan;
+};
+
+PlannedLayout plan_layout(const Drawing& drawing, Context& context) {
+  PlannedLayout planned{make_layout(drawing, context), {}};
+  Plan plan;
+  const PatchedSurface quads = fill_faces(planned.drawn);
+  if (!planned.drawn.problems.empty()) return planned;
+  plan.base = outline_of(quads);
+  planned.plan = to_json(plan);
+  return planned;
+}
+
+py::dict to_dict(const PlannedLayout& planned) {
+  py::dict result = to_dict(planned.drawn);
+  result["plan"] = planned.plan;
+  return result;
 }
 
 py::dict layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
-  DrawnLayout drawn = drawn_layout(points, faces, strokes, snap);
-  Plan plan;
-  without_gil([&] {
-    const PatchedSurface quads = fill_faces(drawn);
-    if (drawn.problems.empty()) plan.base = outline_of(quads);
-  });
-  py::dict result = to_dict(drawn);
-  result["plan"] = drawn.problems.empty() ? to_json(plan) : "";
-  return result;
+  const Drawing drawing = drawing_from_python(points, faces, strokes, snap);
+  return to_dict(run_interruptibly([&](Context& context) { return plan_layout(drawing, context); }));
+}
+
+std::shared_ptr<PythonJob> start_layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
+  auto planned = std::make_shared<PlannedLayout>();  // written by the job's thread until it is done
+  return start_job([drawing = drawing_from_python(points, faces, strokes, snap), planned](Context& context) { *planned = plan_layout(drawing, context); },
+                   [planned]() -> py::object { return to_dict(*planned); });
 }
 
 }  // namespace
@@ -143,6 +173,8 @@ void bind_drawn_layout(py::module_& module) {
              "how many each face is filled with, 0 where it cannot be.");
   module.def("layout_plan", &layout_plan, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
              "The same, and its faces, filled with quads, as the base domain of a plan: the entry plan is JSON text, empty if there are problems.");
+  module.def("start_layout_plan", &start_layout_plan, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
+             "Starts layout_plan and returns its Job at once; the job's result is what layout_plan returns.");
 }
 
 }  // namespace hybrid_mesh

@@ -14,44 +14,17 @@ namespace py = pybind11;
 namespace hybrid_mesh {
 namespace {
 
-// A remesh on a thread of its own. It never touches Python: its arrays were copied before it starts.
-class RemeshJob {
- public:
-  RemeshJob(PolygonSoup input, const RemeshOptions& options)
-      : result_(std::make_shared<RemeshResult>()),
-        job_([input = std::move(input), options, result = result_](Context& context) { *result = remesh(input, options, context); }) {}
-
-  ~RemeshJob() {
-    if (!PyGILState_Check()) return;
-    const py::gil_scoped_release release;
-    job_.stop();
-  }
-
-  Job& job() { return job_; }
-  PythonResult result() {
-    wait_interruptibly(job_);
-    without_gil([&] { job_.rethrow(); });
-    if (!python_result_) python_result_.emplace(result_);
-    return *python_result_;
-  }
-
- private:
-  std::shared_ptr<RemeshResult> result_;       // written by the job's thread until it is done
-  std::optional<PythonResult> python_result_;  // guarded by the interpreter's lock
-  Job job_;
-};
-
-// Every job that Python has started and not yet let go: a thread that outlives the interpreter's exit would crash it.
+// Every job that Python has started and not yet let go.
 class LiveJobs {
  public:
-  void add(const std::shared_ptr<RemeshJob>& job) {
+  void add(const std::shared_ptr<PythonJob>& job) {
     const std::lock_guard lock(mutex_);
     jobs_.erase(std::remove_if(jobs_.begin(), jobs_.end(), [](const auto& weak) { return weak.expired(); }), jobs_.end());
     jobs_.push_back(job);
   }
 
   void stop_all() {
-    std::vector<std::shared_ptr<RemeshJob>> live;
+    std::vector<std::shared_ptr<PythonJob>> live;
     {
       const std::lock_guard lock(mutex_);
       for (const auto& weak : jobs_) {
@@ -65,7 +38,7 @@ class LiveJobs {
 
  private:
   std::mutex mutex_;
-  std::vector<std::weak_ptr<RemeshJob>> jobs_;
+  std::vector<std::weak_ptr<PythonJob>> jobs_;
 };
 
 LiveJobs& live_jobs() {
@@ -73,18 +46,39 @@ LiveJobs& live_jobs() {
   return jobs;
 }
 
-std::shared_ptr<RemeshJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
-  auto job = std::make_shared<RemeshJob>(soup_from_arrays(points, offsets, indices), remesh_options_from_dict(settings));
-  live_jobs().add(job);
-  return job;
+std::shared_ptr<PythonJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
+  auto result = std::make_shared<RemeshResult>();  // written by the job's thread until it is done
+  return start_job([input = soup_from_arrays(points, offsets, indices), options = remesh_options_from_dict(settings), result](Context& context) { *result = remesh(input, options, context); },
+                   [result, made = std::optional<PythonResult>()]() mutable {
+                     if (!made) made.emplace(result);
+                     return py::cast(*made);
+                   });
 }
 
-bool wait(RemeshJob& job, std::optional<double> timeout_s) {
+bool wait(PythonJob& job, std::optional<double> timeout_s) {
   if (timeout_s && !(*timeout_s >= 0)) throw Error(ErrorCode::InvalidInput, "the timeout must not be negative");
   return wait_interruptibly(job.job(), timeout_s);
 }
 
 }  // namespace
+
+PythonJob::~PythonJob() {
+  if (!PyGILState_Check()) return;
+  const py::gil_scoped_release release;
+  job_.stop();
+}
+
+py::object PythonJob::result() {
+  wait_interruptibly(job_);
+  without_gil([&] { job_.rethrow(); });
+  return make_();
+}
+
+std::shared_ptr<PythonJob> start_job(Job::Work work, std::function<py::object()> make) {
+  auto job = std::make_shared<PythonJob>(std::move(work), std::move(make));
+  live_jobs().add(job);
+  return job;
+}
 
 bool wait_interruptibly(const Job& job, std::optional<double> timeout_s) {
   using Clock = std::chrono::steady_clock;
@@ -105,19 +99,19 @@ bool wait_interruptibly(const Job& job, std::optional<double> timeout_s) {
 
 void bind_job(py::module_& module) {
   using py::arg;
-  py::class_<RemeshJob, std::shared_ptr<RemeshJob>>(module, "Job", "A remesh that runs on a thread of its own.")
+  py::class_<PythonJob, std::shared_ptr<PythonJob>>(module, "Job", "Work that runs on a thread of its own.")
       .def_property_readonly(
-          "progress", [](RemeshJob& job) { return job.job().progress(); }, "In [0, 1], never decreasing.")
+          "progress", [](PythonJob& job) { return job.job().progress(); }, "In [0, 1], never decreasing.")
       .def_property_readonly(
-          "stage", [](RemeshJob& job) { return job.job().stage(); }, "What is being done.")
+          "stage", [](PythonJob& job) { return job.job().stage(); }, "What is being done.")
       .def_property_readonly(
-          "done", [](RemeshJob& job) { return job.job().done(); }, "It has ended, in whatever way.")
+          "done", [](PythonJob& job) { return job.job().done(); }, "It has ended, in whatever way.")
       .def(
-          "cancel", [](RemeshJob& job) { job.job().cancel(); }, "Asks it to end; result() then raises Cancelled.")
+          "cancel", [](PythonJob& job) { job.job().cancel(); }, "Asks it to end; result() then raises Cancelled.")
       .def("wait", &wait, arg("timeout_s") = py::none(), "Waits until it has ended or the time is over; returns `done`.")
-      .def("result", &RemeshJob::result, "Waits, then returns the Result or raises what went wrong.");
+      .def("result", &PythonJob::result, "Waits, then returns what start_... says, or raises what went wrong.");
   module.def("start_remesh", &start_remesh, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
-             "Starts a remesh and returns its Job at once.");
+             "Starts a remesh and returns its Job at once; the job's result is a Result.");
   module.def(
       "shutdown_jobs", [] { live_jobs().stop_all(); }, "Cancels every job that is still running and waits for its thread.");
   py::module_::import("atexit").attr("register")(module.attr("shutdown_jobs"));

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kReach = 0.5;        // of the region's diagonal
 constexpr double kCornerReach = 0.4;  // of the mean length of the region's boundary sides
+constexpr double kSnap = 0.25;        // of the same: curves may run along the rim half a quad away from it
 
 double diagonal_of(const TriangleSurface& mesh) {
   Vec3 low = mesh.points.front(), high = low;
@@ -25,10 +26,15 @@ double diagonal_of(const TriangleSurface& mesh) {
   return (high - low).norm();
 }
 
-// Ends that are meant to be at corners of the region: those of a level lie off the surface, and curves are drawn to them.
-void snap_to_corners(std::vector<DrawnStroke>& strokes, const std::vector<Vec3>& corners) {
+double mean_side(const std::vector<Vec3>& corners) {
   double length = 0;
   for (std::size_t k = 0; k < corners.size(); ++k) length += (corners[(k + 1) % corners.size()] - corners[k]).norm() / static_cast<double>(corners.size());
+  return length;
+}
+
+// Ends that are meant to be at corners of the region: those of a level lie off the surface, and curves are drawn to them.
+void snap_to_corners(std::vector<DrawnStroke>& strokes, const std::vector<Vec3>& corners) {
+  const double length = mean_side(corners);
   for (DrawnStroke& s : strokes) {
     if (s.points.size() < 2) continue;
     for (Vec3* end : {&s.points.front(), &s.points.back()}) {
@@ -52,7 +58,7 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
   for (const int v : options.boundary_nodes) corner.push_back(disk.points[v]);
   snap_to_corners(strokes, corner);
   // What is near is so by the size of the whole surface, as far as the region has room for it.
-  options.snap = std::clamp(DrawnLayoutOptions().snap / std::max(diagonal_of(disk), 1e-9), 0.02, 0.12);
+  options.snap = std::clamp(std::min(DrawnLayoutOptions().snap, kSnap * mean_side(corner)) / std::max(diagonal_of(disk), 1e-9), 0.02, 0.12);
   // Curves are drawn on a level, which is the farther from the surface the coarser it is.
   options.reach = kReach;
   DrawnLayout drawn = make_layout(disk, strokes, options, progress);

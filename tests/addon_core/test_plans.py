@@ -11,7 +11,8 @@ LINE = numpy.array([[0, 0, 0.1], [1, 2, 1 / 3]])
 
 def operation(**changes):
     values = {"level": 2, "addresses": ["12.0.3"], "strokes": [(LINE, "tight")], "buffer_rings": 1, **changes}
-    return plans.repatch_operation(**values)
+    strokes = values.pop("strokes")
+    return plans.repatch_operation(layout=plans.drawn_layout(strokes), **values)
 
 
 def test_an_address_names_every_child_on_the_way():
@@ -83,6 +84,28 @@ def test_what_is_no_operation(changes, message):
         operation(**changes)
 
 
+def test_layouts_that_are_not_drawn():
+    def region(layout):
+        return plans.repatch_operation(3, ["0.1.2.3"], layout, 0)
+
+    assert region(plans.automatic_layout()) == {"level": 3, "quads": ["0.1.2.3"], "layout": "automatic", "buffer_rings": 0}
+    assert region(plans.cubes_layout(2))["height"] == 2 and region(plans.cubes_layout())["height"] == 0
+    copied = region(plans.template_layout("0.1.2.3", 2, numpy.array([[0, 1, 2, 3]])))
+    assert json.loads(json.dumps(copied)) == {"level": 3, "quads": ["0.1.2.3"], "layout": "template", "start": ["0.1.2.3", 2], "new_quads": [[0, 1, 2, 3]], "buffer_rings": 0}
+
+
+@pytest.mark.parametrize("height", [-1, 1.0, True, 1001])
+def test_what_is_no_tower(height):
+    with pytest.raises(plans.PlanError, match="height"):
+        plans.cubes_layout(height)
+
+
+@pytest.mark.parametrize("side, quads", [(4, [[0, 1, 2, 3]]), (-1, [[0, 1, 2, 3]]), (0, []), (0, [[0, 1, 2]]), (0, [[0, 1, 2, -1]])])
+def test_what_is_no_template(side, quads):
+    with pytest.raises(plans.PlanError):
+        plans.template_layout("0", side, quads)
+
+
 def test_operations_are_appended_and_the_rest_is_kept():
     first, second = operation(), operation(level=3)
     text = plans.with_operation(plans.with_operation(PLAN, first), second)
@@ -94,3 +117,15 @@ def test_operations_are_appended_and_the_rest_is_kept():
 def test_what_is_no_plan(text):
     with pytest.raises(plans.PlanError):
         plans.with_operation(text, operation())
+
+
+def test_a_base_on_a_boundary():
+    assert json.loads(plans.boundary_plan())["base"] == {"boundary_nodes": "automatic", "cubes": 0}
+    nodes = numpy.eye(4)[:, :3]
+    plan = plans.parse(plans.boundary_plan(nodes, 3))
+    assert plan["base"] == {"boundary_nodes": nodes.tolist(), "cubes": 3}
+    for wrong in (nodes[:3], nodes[:, :2], numpy.full((4, 3), numpy.inf)):
+        with pytest.raises(plans.PlanError):
+            plans.boundary_plan(wrong)
+    with pytest.raises(plans.PlanError, match="cubes"):
+        plans.boundary_plan(nodes, -1)

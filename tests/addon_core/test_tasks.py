@@ -5,7 +5,7 @@ import numpy
 import pytest
 from hybrid_mesh import _native
 from hybrid_mesh.core.settings import RemeshSettings
-from hybrid_mesh.core.tasks import Task, TaskRun
+from hybrid_mesh.core.tasks import Chain, Task, TaskRun
 
 TRIANGLE = (numpy.eye(3), numpy.array([0, 3]), numpy.array([0, 1, 2], dtype=numpy.int32))
 
@@ -67,3 +67,52 @@ def test_an_interrupted_wait_cancels(monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         run.wait()
     assert run.done
+
+
+def started(name="a", **settings):
+    return task(name, **settings).start()
+
+
+def test_a_chain_is_two_jobs_as_one():
+    given = []
+
+    def go_on(result):
+        given.append(result)
+        return started()
+
+    seen = [0.0]
+    chain = Chain(started(), go_on, 0.25)
+    while not chain.wait(0.01):
+        seen.append(chain.progress)
+    assert chain.done and len(given) == 1 and chain.progress == 1
+    assert seen == sorted(seen) and chain.result() is not None and len(given) == 1
+    run = TaskRun([Task("a", lambda: Chain(started(), lambda result: started()))])
+    run.wait()
+    assert [one.name for one, _ in run.results] == ["a"]
+
+
+def test_either_job_of_a_chain_may_fail():
+    first = Chain(started(vertices=2), lambda result: pytest.fail("it goes on without a result"))
+    second = Chain(started(), lambda result: started(vertices=2))
+    for chain in (first, second):
+        with pytest.raises(_native.Error, match="fewer than"):
+            chain.result()
+        assert chain.done
+
+    def refuse(result):
+        raise ValueError("not this one")
+
+    chain = Chain(started(), refuse)
+    assert chain.wait()
+    for _ in range(2):
+        with pytest.raises(ValueError, match="not this one"):
+            chain.result()
+
+
+def test_a_chain_that_is_cancelled_does_not_go_on(monkeypatch):
+    monkeypatch.setenv("HYBRID_MESH_FAKE_SECONDS", "60")
+    run = TaskRun([Task("a", lambda: Chain(started(), lambda result: pytest.fail("it goes on after a cancel")))])
+    run.step()
+    began = time.monotonic()
+    run.cancel()
+    assert time.monotonic() - began < 0.5 and run.done and not run.results

@@ -8,7 +8,7 @@ import numpy
 import pytest
 
 from conftest import module
-from test_layouts import broken_cube, cube_lines, draw, layout_of, read, state, strokes
+from test_layouts import broken_cube, cube_lines, draw, layout_of, read, state, strokes, vector
 
 
 def plan_of(obj):
@@ -196,3 +196,68 @@ def test_what_is_no_region(world, region):
     refused(bpy.ops.hybrid_mesh.repatch_region, "gone")
     world.select(region.scan)
     assert not bpy.ops.hybrid_mesh.repatch_region.poll()
+
+
+def operations(obj):
+    return module("features.levels.properties").operations_of(obj.hybrid_mesh.hierarchy)
+
+
+def level_of(preview, name):
+    return next(obj for obj in preview.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.role == "LEVEL" and obj.hybrid_mesh.level == name)
+
+
+def select_faces(world, level, faces):
+    world.select(level)
+    for polygon in level.data.polygons:
+        polygon.select = polygon.index in faces
+
+
+@pytest.mark.parametrize("kind, new_quads", [("AUTOMATIC", None), ("CUBES", 14)])
+def test_a_region_is_laid_out_without_curves(world, region, kind, new_quads):
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind=kind, height=2, buffer_rings=0) == {"FINISHED"}
+    preview = bpy.context.object
+    (operation,) = json.loads(plan_of(preview))["operations"]
+    assert operation["layout"] == kind.lower() and operation["quads"] == region.addresses and "curves" not in operation
+    (made,) = operations(preview)
+    assert sorted(made["quads"]) == sorted(region.addresses) and made["corners"] == 6
+    assert new_quads is None or len(made["new_quads"]) == new_quads
+    assert world.distance(region.scan, level_of(preview, sorted(one.hybrid_mesh.level for one in preview.hybrid_mesh.hierarchy.objects)[-1]))["hausdorff"] < 0.03
+
+
+def test_a_region_of_a_semi_regular_remesh_becomes_an_operation(world):
+    bpy.context.scene.hybrid_mesh.semi_regular = True
+    region = Region(world, world.scan())
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    assert len(operations(bpy.context.object)) == 1 and len(level_of(bpy.context.object, "N1").data.polygons) == len(region.level.data.polygons) + 6
+
+
+@pytest.mark.parametrize("place", [{}, {"scale": (-1, 1, 1.3)}])
+def test_a_layout_is_copied_to_another_region(world, place):
+    region = Region(world, world.scan(**place))
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    refused(bpy.ops.hybrid_mesh.repatch_region, "no operation whose layout can be copied", layout_kind="COPY")
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    first = bpy.context.object
+    level = level_of(first, "N1")
+    level.hide_set(False)
+    # Two neighbours that are far from what is new.
+    mesh = level.data
+    new = module("bridge.meshes").get_attribute(mesh, "irregular")
+    middle = numpy.mean([polygon.center for polygon in mesh.polygons if new[polygon.index]], axis=0)
+    far = max((polygon.index for polygon in mesh.polygons if not new[polygon.index]), key=lambda face: (mesh.polygons[face].center - vector(middle)).length)
+    edge = mesh.polygons[far].edge_keys[0]
+    pair = {far, next(polygon.index for polygon in mesh.polygons if polygon.index != far and edge in polygon.edge_keys)}
+    select_faces(world, level, {far})
+    refused(bpy.ops.hybrid_mesh.repatch_region, "has 4 sides.*6", layout_kind="COPY", source="0")
+    select_faces(world, level, pair)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="COPY", source="0") == {"FINISHED"}
+    made = operations(bpy.context.object)
+    assert len(made) == 2 and made[0]["new_quads"] == made[1]["new_quads"] and made[0]["quads"] != made[1]["quads"]
+    # The removed quads lie in their layout in the same way.
+    counts = [module("features.layouts.operators")._removed_counts(bpy.context.object.hybrid_mesh.hierarchy, one) for one in made]
+    assert counts[0] == counts[1] and sorted(counts[0]) == [1, 1, 1, 1, 2, 2]

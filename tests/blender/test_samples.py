@@ -14,6 +14,8 @@ SAMPLES = pathlib.Path(__file__).resolve().parents[2] / "blend_samples"
 EXPECTED = {
     "bunny": {"bunny": (0, 5)},
     "buddha": {"buddha": (6, 0)},
+    "head": {"head": (0, 1)},
+    "head_layout": {"head": (0, 0)},
     "knot": {"knot": (1, 0)},
     "transforms": {"Größe 猫": (1, 0), "Stern ★": (0, 0), "mirrored": (1, 0)},
 }

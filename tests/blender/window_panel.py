@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels draw, before and after a remesh, and the preview's level changes what the view shows."""
+"""The sidebar panels draw, before and after a remesh, and for a region of a level; the preview's level changes what the view shows."""
 
 import os
 import sys
@@ -10,6 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import stepper  # noqa: E402
 from hybrid_mesh import jobs, registration  # noqa: E402
 from hybrid_mesh.bridge import levels  # noqa: E402
+from hybrid_mesh.features.layouts import panel as layout_panel  # noqa: E402
 
 
 def steps():
@@ -45,6 +46,21 @@ def steps():
         assert levels.level_of(preview) == level
         yield 2  # for a software renderer to draw it
         stepper.screenshot(f"panel_level{level}")
+    level = levels_of(preview)[1]
+    level.hide_set(False)
+    bpy.context.view_layer.objects.active = level
+    # Alone, so that it is not below the window's edge.
+    for cls in reversed(panels):
+        bpy.utils.unregister_class(cls)
+    bpy.utils.register_class(layout_panel.HYBRID_MESH_PT_layout)
+    for kind in ("DRAWN", "AUTOMATIC", "CUBES", "COPY"):
+        bpy.context.scene.hybrid_mesh_region.layout_kind = kind
+        stepper.view()["area"].tag_redraw()
+        yield 1
+        stepper.screenshot(f"panel_region_{kind.lower()}")
+    for cls in panels:
+        if not hasattr(bpy.types, cls.__name__):
+            bpy.utils.register_class(cls)
     bpy.context.scene.hybrid_mesh.refinement = "ADAPTIVE"
     bpy.context.scene.hybrid_mesh.base = "GIVEN"
     yield 0.5

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
+import time
 
 import numpy as np
 import pytest
@@ -238,3 +239,26 @@ def test_meshes_and_settings_that_cannot_be_used():
     for snap in (-1, 2, float("nan")):
         with pytest.raises(_native.InvalidInput, match="snap"):
             _native.make_layout(points, faces, [], snap=snap)
+
+
+def test_a_layout_is_planned_by_a_job():
+    mesh, strokes = sphere(12), cube_strokes(np.random.default_rng(1), 0.01)
+    job = _native.start_layout_plan(*triangles(mesh), strokes)
+    assert job.wait(60) and job.progress == 1
+    expected = _native.layout_plan(*triangles(mesh), strokes)
+    assert expected["plan"]
+    for _ in range(2):
+        assert job.result()["plan"] == expected["plan"] and (job.result()["nodes"] == expected["nodes"]).all()
+    strokes[0]["points"] = strokes[0]["points"][:4]  # ends in nowhere
+    broken = _native.start_layout_plan(*triangles(mesh), strokes).result()
+    assert broken["plan"] == "" and broken["problems"]
+
+
+def test_a_layout_job_ends_soon_after_it_is_cancelled():
+    job = _native.start_layout_plan(*triangles(sphere(200)), cube_strokes(np.random.default_rng(1), 0.01))
+    assert not job.wait(0.02)
+    start = time.perf_counter()
+    job.cancel()
+    assert job.wait(30) and time.perf_counter() - start < 0.5
+    with pytest.raises(_native.Cancelled):
+        job.result()

@@ -4,17 +4,27 @@ import contextlib
 import bpy
 import mathutils
 import numpy
-from bpy.props import IntProperty
+from bpy.props import EnumProperty, IntProperty
 
 from ... import compat
 from ...bridge import arrays, meshes, strokes, transfer
-from ...core import plans
+from ...core import plans, regions
 from ...core import settings as core
 from ...core.native import NativeMissing, explain, native
+from ...core.tasks import Chain, Task
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
-from ..remesh.properties import core_settings
+from ..remesh.properties import CUBES, core_settings
 from . import drawing, properties
+
+
+class LayoutProblemsError(ValueError):
+    """A drawn layout that cannot be remeshed. result: what the native module made of it."""
+
+    def __init__(self, result):
+        problems = result["problems"]
+        super().__init__(f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}")
+        self.result = result
 
 
 class _OnSurface:
@@ -130,13 +140,14 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
         settings = core_settings(context.scene.hybrid_mesh)
         source = meshes.read_source(surface, context.evaluated_depsgraph_get(), transfer.collect)
         layout, drawn = drawing.read_drawn(context, surface)
-        with _waiting(context):
-            result = native().layout_plan(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
-        if result["problems"]:
-            _show_check(self, context, surface, layout, drawn, result, source)
-            _push_marks()
-            raise ValueError(_refusal(result["problems"]))
-        return [source_task(surface.name, source, settings, result["plan"])]
+        name, given, snap = surface.name, drawing.for_native(drawn), layout.hybrid_mesh_layout.snap
+
+        def remesh(result):
+            if result["problems"]:
+                raise LayoutProblemsError(result)
+            return source_task(name, source, settings, result["plan"]).start()
+
+        return [Task(name, lambda: Chain(native().start_layout_plan(*_triangles(source), given, snap), remesh), (source, settings))]
 
     def finish(self, context, results):
         _to_object_mode(context)
@@ -149,22 +160,80 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
             drawing.hide(context, surface)
 
     def failed(self, context, task, error):
-        _show_failure(context, task.name, error)
+        surface = context.scene.objects.get(task.name)
+        layout = properties.layout_of(surface, context.scene) if surface is not None else None
+        if isinstance(error, LayoutProblemsError) and layout is not None:
+            _show_check(self, context, surface, layout, strokes.read(layout, context.scene.frame_current), error.result, task.note[0])
+            _push_marks()
+        else:
+            _show_failure(context, task.name, error)
 
     def hides_source(self, context):
         return context.scene.hybrid_mesh.hide_source
 
 
-class HYBRID_MESH_OT_repatch_region(RemeshJobOperator):
-    """Lay out the selected faces of a level anew along the curves drawn over them: the source is remeshed with one more operation"""
+class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
+    """Remesh a surface with one boundary loop from a base domain of cubes that stand on it, each on the one before. In Edit Mode, four selected vertices of the boundary are the first one's corners; else they are found"""
+
+    bl_idname = "hybrid_mesh.remesh_boundary"
+    bl_label = "Remesh from Boundary"
+    bl_options = {"REGISTER", "UNDO"}
+
+    cubes: CUBES
+
+    @classmethod
+    def poll(cls, context):
+        if not super().poll(context):
+            return False
+        if context.mode != "OBJECT" and not (context.mode == "EDIT_MESH" and context.object.type == "MESH"):
+            cls.poll_message_set("Works in Object Mode and in Edit Mode")
+            return False
+        return True
+
+    def draw(self, context):
+        self.layout.prop(self, "cubes")
+
+    def prepare(self, context):
+        surface = properties.surface_of(context.object, context.scene)
+        nodes = None
+        if surface.mode == "EDIT":
+            nodes = _boundary_nodes(surface)
+            surface.update_from_editmode()
+        settings = core_settings(context.scene.hybrid_mesh)
+        return [remesh_task(surface, context.evaluated_depsgraph_get(), settings, plans.boundary_plan(nodes, self.cubes))]
+
+    def finish(self, context, results):
+        _to_object_mode(context)
+        super().finish(context, results)
+
+    def hides_source(self, context):
+        return context.scene.hybrid_mesh.hide_source
+
+
+_sources = []  # Blender keeps no reference to the texts of items that a function returns.
+
+
+def _source_items(operator, context):
+    """The operations of the active object's hierarchy whose layout can be copied."""
+    surface = properties.surface_of(context.object, context.scene) if context is not None else None
+    hierarchy = hierarchy_properties.hierarchy_of(surface if properties.is_level(surface) else context.object) if context is not None else None
+    found = hierarchy_properties.operations_of(hierarchy) if hierarchy is not None else []
+    _sources[:] = [
+        (str(number), f"Level {one['level']}: {len(one['quads'])} quads to {len(one['new_quads'])}, {one['corners']} sides", "Copy the layout of this operation", number)
+        for number, one in enumerate(found)
+        if one["corners"]
+    ] or [("NONE", "None", "The hierarchy has no operation whose layout can be copied", 0)]
+    return _sources
+
+
+class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperator):
+    """Lay out the selected faces of a level anew, along curves drawn over them or by a rule: the source is remeshed with one more operation"""
 
     bl_idname = "hybrid_mesh.repatch_region"
     bl_label = "Repatch Region"
     bl_options = {"REGISTER", "UNDO"}
 
-    buffer_rings: IntProperty(
-        name="Buffer Rings", description="Rings of quads around the region that are smoothed with it", default=1, min=0, max=plans.MAXIMUM_BUFFER_RINGS
-    )
+    source: EnumProperty(name="Operation", description="The operation whose layout is copied", items=_source_items)
 
     _level = ""  # names, because the objects may go while the work runs
     _hierarchy = ""
@@ -177,7 +246,9 @@ class HYBRID_MESH_OT_repatch_region(RemeshJobOperator):
         return True
 
     def draw(self, context):
-        self.layout.prop(self, "buffer_rings")
+        properties.draw_region(self.layout, self)
+        if self.layout_kind == "COPY":
+            self.layout.prop(self, "source")
 
     def prepare(self, context):
         level = properties.surface_of(context.object, context.scene)
@@ -190,10 +261,19 @@ class HYBRID_MESH_OT_repatch_region(RemeshJobOperator):
         if not plan:
             raise ValueError(f"{hierarchy.name} has no plan; remesh {source.name} again")
         addresses = _selected_quads(level, hierarchy)
-        _, drawn = drawing.read_drawn(context, level)
-        operation = plans.repatch_operation(_level_number(level), addresses, [(stroke.points, drawing.fit_of(stroke)) for stroke in drawn], self.buffer_rings)
+        operation = plans.repatch_operation(_level_number(level), addresses, self._new_layout(context, level, hierarchy), self.buffer_rings)
         self._level, self._hierarchy = level.name, hierarchy.name
         return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
+
+    def _new_layout(self, context, level, hierarchy):
+        if self.layout_kind == "AUTOMATIC":
+            return plans.automatic_layout()
+        if self.layout_kind == "CUBES":
+            return plans.cubes_layout(self.height)
+        if self.layout_kind == "COPY":
+            return _copied_layout(level, hierarchy, self.source, self.turn)
+        _, drawn = drawing.read_drawn(context, level)
+        return plans.drawn_layout([(stroke.points, drawing.fit_of(stroke)) for stroke in drawn])
 
     def finish(self, context, results):
         _to_object_mode(context)
@@ -242,10 +322,6 @@ def _count(number, things):
     return f"{number} {things.removesuffix('s') if number == 1 else things}"
 
 
-def _refusal(problems):
-    return f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}"
-
-
 def _show_check(operator, context, surface, layout, drawn, result, source):
     """Shows what was made of the strokes, and says it."""
     size = _diagonal(source.mesh.points)
@@ -283,6 +359,18 @@ def _push_marks():
     bpy.ops.ed.undo_push(message="Mark Layout Problems")
 
 
+def _boundary_nodes(surface):
+    """The four points that are selected on the boundary of a mesh in Edit Mode, or None where nothing is; raises ValueError."""
+    points, on_boundary = meshes.selected_vertices(surface)
+    if not len(points):
+        return None
+    if len(points) != 4:
+        raise ValueError(f"{surface.name}: {len(points)} {'vertex is' if len(points) == 1 else 'vertices are'} selected; select four of the boundary, or none")
+    if not on_boundary.all():
+        raise ValueError(f"{surface.name}: {4 - int(on_boundary.sum())} of the four selected vertices {'is' if on_boundary.sum() == 3 else 'are'} not on the boundary")
+    return points
+
+
 def _selected_quads(level, hierarchy):
     """Addresses of the faces that are selected in a level object; raises ValueError where they cannot be had."""
     root, path = _addresses(level)
@@ -299,6 +387,40 @@ def _selected_quads(level, hierarchy):
             if roots is not None:
                 known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
     return plans.quad_addresses(_level_number(level), root[chosen].tolist(), path[chosen].tolist(), plans.root_levels(known))
+
+
+def _copied_layout(level, hierarchy, source, turn):
+    """The layout of an operation, to be put onto the selected faces; raises ValueError where it does not fit them."""
+    found = hierarchy_properties.operations_of(hierarchy)
+    if not source.isdigit() or int(source) >= len(found) or not found[int(source)]["corners"]:
+        raise ValueError(f"{hierarchy.name} has no operation whose layout can be copied; lay out a region in another way first")
+    operation = found[int(source)]
+    chosen = meshes.selected_faces(level)
+    quads = meshes.quad_corners(level, chosen)
+    if quads is None:
+        raise ValueError(f"the selected faces of {level.name} are not all quads, or its UV map {meshes.PATCH_UV} is gone")
+    quad, side = regions.copy_start(quads, _removed_counts(hierarchy, operation), turn)
+    root, path = (values[chosen] for values in _addresses(level))
+    return plans.template_layout(plans.address(root[quad], path[quad]), side, operation["new_quads"])
+
+
+def _removed_counts(hierarchy, operation):
+    """regions.corner_counts() of the quads that an operation replaced, from its layout's corner 0 on; all 0 where the level that had them is gone."""
+    unknown = [0] * operation["corners"]
+    name = f"M{operation['level']}"
+    before = next((obj for obj in hierarchy.objects if properties.is_level(obj) and obj.hybrid_mesh.level == name and obj.mode == "OBJECT"), None)
+    root, path = _addresses(before) if before is not None else (None, None)
+    if root is None:
+        return unknown
+    wanted = set(operation["quads"])
+    removed = [number > 0 and plans.address(of, number) in wanted for of, number in zip(root.tolist(), path.tolist())]
+    quads = meshes.quad_corners(before, removed)
+    if quads is None or len(quads) != len(operation["quads"]):
+        return unknown
+    addresses = [plans.address(root[face], path[face]) for face in numpy.nonzero(removed)[0]]
+    sides = regions.boundary(quads)
+    start = next((k for k, (quad, side) in enumerate(sides) if [addresses[quad], side] == operation["start"]), None)
+    return unknown if start is None else regions.corner_counts(quads, sides[start:] + sides[:start])
 
 
 def _addresses(level):

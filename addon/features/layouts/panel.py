@@ -33,13 +33,16 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         drawn = properties.layout_of(surface, context.scene)
         layout.label(text=surface.name, icon="MESH_DATA")
         layout.operator("hybrid_mesh.draw_layout", icon="GREASEPENCIL")
-        if drawn is None:
-            return
-        values = drawn.hybrid_mesh_layout
         if properties.is_level(surface):
-            self._region(layout, values)
-        else:
-            self._whole(layout, values)
+            self._region(layout, context.scene.hybrid_mesh_region)
+        elif drawn is not None:
+            self._whole(layout, drawn.hybrid_mesh_layout)
+        if drawn is not None:
+            self._problems(context, layout, drawn.hybrid_mesh_layout)
+        if not properties.is_level(surface):
+            self._boundary(layout, context.scene.hybrid_mesh)
+
+    def _problems(self, context, layout, values):
         if len(values.problems):
             layout.template_list("HYBRID_MESH_UL_problems", "", values, "problems", values, "problem_index", rows=min(len(values.problems), 6))
             if values.problem_index < len(values.problems):
@@ -57,6 +60,14 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         column.scale_y = 1.4
         column.operator("hybrid_mesh.remesh_layout", icon="MOD_REMESH")
 
+    def _boundary(self, layout, settings):
+        layout.separator()
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "cubes")
+        column.operator("hybrid_mesh.remesh_boundary", icon="MOD_REMESH").cubes = settings.cubes
+
     def _words(self, context, layout, problem):
         """All that is said of a problem, in lines that fit the sidebar."""
         text = problem.message if problem.number < 0 else f"{problem.message} (stroke {problem.number + 1} of {problem.layer})"
@@ -65,10 +76,12 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
             column.label(text=line)
 
     def _region(self, layout, values):
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
-        column.prop(values, "buffer_rings")
+        properties.draw_region(layout.column(), values)
         column = layout.column()
         column.scale_y = 1.4
-        column.operator("hybrid_mesh.repatch_region", icon="MOD_REMESH").buffer_rings = values.buffer_rings
+        if values.layout_kind == "COPY":
+            operator = column.operator_menu_enum("hybrid_mesh.repatch_region", "source", icon="MOD_REMESH")
+        else:
+            operator = column.operator("hybrid_mesh.repatch_region", icon="MOD_REMESH")
+        for name in properties.REGION_NAMES:
+            setattr(operator, name, getattr(values, name))

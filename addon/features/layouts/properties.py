@@ -5,7 +5,7 @@ import bpy
 from bpy.props import CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
 from ...bridge import strokes
-from ...core.plans import MAXIMUM_BUFFER_RINGS
+from ...core import plans
 from ..levels.properties import hierarchy_of
 
 KINDS = (
@@ -14,6 +14,42 @@ KINDS = (
     ("CURVES", "Curves", "What a check made of the strokes: curves and nodes on the surface"),
     ("PROBLEMS", "Problems", "Marks where a check found something wrong"),
 )
+
+
+REGION_LAYOUTS = (
+    ("DRAWN", "Drawn Curves", "The new quads are those that are drawn"),
+    ("AUTOMATIC", "Automatic", "The new quads are found from the region's boundary, so that its corners become regular"),
+    ("CUBES", "Cubes", "A tower of cubes grows skin on the region: rings of quads along its boundary, and its own quads on top"),
+    ("COPY", "Copy", "The new quads are arranged as another operation of the hierarchy has them; the region has as many sides as that one's"),
+)
+class RegionProperties:
+    """Mix-in for whatever has the settings of a region that is laid out anew as properties."""
+
+    layout_kind: EnumProperty(name="Layout", description="Where the region's new quads come from", items=REGION_LAYOUTS, default="DRAWN")
+    height: IntProperty(name="Height", description="Cubes of the tower; 0 for as many as make its sides square", default=0, min=0, max=plans.MAXIMUM_CUBES, soft_max=20)
+    turn: IntProperty(name="Turn", description="Turns the copied layout by so many corners of the region's boundary", default=0, min=-100, max=100)
+    buffer_rings: IntProperty(
+        name="Buffer Rings", description="Rings of quads around the region that are smoothed with it", default=1, min=0, max=plans.MAXIMUM_BUFFER_RINGS
+    )
+
+
+REGION_NAMES = tuple(RegionProperties.__annotations__)
+
+
+def draw_region(layout, properties):
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    column = layout.column()
+    column.prop(properties, "layout_kind")
+    if properties.layout_kind == "CUBES":
+        column.prop(properties, "height")
+    if properties.layout_kind == "COPY":
+        column.prop(properties, "turn")
+    column.prop(properties, "buffer_rings")
+
+
+class HybridMeshRegion(RegionProperties, bpy.types.PropertyGroup):
+    pass
 
 
 class HybridMeshProblem(bpy.types.PropertyGroup):
@@ -32,7 +68,6 @@ class HybridMeshLayout(bpy.types.PropertyGroup):
         name="Snap", description="What ends so near to a node, a curve or the boundary is joined with it; a fraction of the bounding-box diagonal",
         default=0.02, min=0, max=0.2, precision=3, step=0.1,
     )  # fmt: skip
-    buffer_rings: IntProperty(name="Buffer Rings", description="Rings of quads around a new region that are smoothed with it", default=1, min=0, max=MAXIMUM_BUFFER_RINGS)
     problems: CollectionProperty(type=HybridMeshProblem)
     problem_index: IntProperty(name="Problem", min=0)
     summary: StringProperty(name="Summary", description="What the last check found")
@@ -69,7 +104,9 @@ def _kind(obj):
 
 def register():
     bpy.types.Object.hybrid_mesh_layout = PointerProperty(type=HybridMeshLayout)
+    bpy.types.Scene.hybrid_mesh_region = PointerProperty(type=HybridMeshRegion)
 
 
 def unregister():
+    del bpy.types.Scene.hybrid_mesh_region
     del bpy.types.Object.hybrid_mesh_layout

@@ -27,15 +27,17 @@ class HybridMeshCollection(bpy.types.PropertyGroup):
     source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed")
     preview: PointerProperty(name="Preview", type=bpy.types.Object, description="The object that shows one level at a time")
     report: StringProperty(name="Report", description="What was measured, as JSON")
+    operations: StringProperty(name="Operations", description="The irregular operations, as JSON: where they are and what quads they put there")
     plan: PointerProperty(name="Plan", type=bpy.types.Text, description="What was decided, as JSON; a remesh can be given it again")
 
 
-def describe(built, source, report, plan=""):
-    """Writes into a new hierarchy what it is, what was measured and, as JSON text, what was decided."""
+def describe(built, source, report, plan="", operations=()):
+    """Writes into a new hierarchy what it is, what was measured and, as JSON text, what was decided; operations: of the native hierarchy."""
     collection = built.collection.hybrid_mesh
     collection.source = source
     collection.preview = built.preview
     collection.report = json.dumps(report, ensure_ascii=False)
+    collection.operations = json.dumps(list(operations))
     if plan:
         collection.plan = bpy.data.texts.new(with_suffix(built.collection.name, " plan"))
         collection.plan.write(plan)
@@ -68,6 +70,11 @@ def plan_of(collection):
     """The plan of a hierarchy as text; empty where there is none."""
     plan = collection.hybrid_mesh.plan
     return plan.as_string() if plan is not None else ""
+
+
+def operations_of(collection):
+    """The irregular operations of a hierarchy: [{kind, level, quads, corners, start, new_quads}], as the native hierarchy tells them."""
+    return _parsed(collection.hybrid_mesh.operations) or []
 
 
 def level_number(name):

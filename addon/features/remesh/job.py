@@ -38,7 +38,7 @@ class RemeshJobOperator(NativeJobOperator):
             if task.name not in context.scene.objects:
                 raise ValueError(f"{task.name}: the object is gone from the scene; nothing was made")
             sources.append(context.scene.objects[task.name])
-        built = [_build(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)]
+        built = [build_hierarchy(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)]
         _select(context, [one.preview for one in built])
         if self.hides_source(context):
             for obj in sources:
@@ -62,7 +62,8 @@ def _refusal(error):
     return start
 
 
-def _build(context, obj, result, source, settings):
+def build_hierarchy(context, obj, result, source, settings):
+    """The objects of a task's result, with the report and the plan; returns levels.Built. source, settings: the task's note."""
     hierarchy = result.hierarchy
     parts = [(name, hierarchy.level(name)) for name in hierarchy.level_names]
     carry = transfer.carrier(source, result.repaired())
@@ -70,7 +71,7 @@ def _build(context, obj, result, source, settings):
     report = json.loads(result.report)
     report["version"] = VERSION
     report["settings"] = settings.reported()
-    hierarchy_properties.describe(built, obj, report, result.plan)
+    hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
     levels.show_preview_only(built)
     return built
 

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ...core import settings as core
+from ...core.plans import MAXIMUM_CUBES
 
 REFINEMENTS = (
     ("UNIFORM", "Uniform", "One quad size everywhere, irregular vertices at the base domain's only"),
@@ -53,11 +54,16 @@ class RemeshProperties:
     threads: IntProperty(name="Threads", description="0 for all cores; never changes the result", default=0, min=0, max=core.MAXIMUM_THREADS)
 
 
+CUBES = IntProperty(
+    name="Cubes", description="Cubes of the chain on the boundary that the base domain is; 0 for as many as make their sides square", default=0, min=0,
+    max=MAXIMUM_CUBES, soft_max=20,
+)  # fmt: skip
 SETTING_NAMES = tuple(RemeshProperties.__annotations__)
 
 
 class HybridMeshScene(RemeshProperties, bpy.types.PropertyGroup):
     hide_source: BoolProperty(name="Hide Source", description="Hide the source in the viewport, so that the result is seen", default=True)
+    cubes: CUBES
 
 
 def core_settings(properties):
