@@ -2,8 +2,10 @@
 #include "layout/layout_search.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -58,8 +60,6 @@ class LayoutSearch {
   LayoutSearchResult run(const LayoutSearchOptions& options, const Progress& progress) {
     const double parts = 2.0 + static_cast<double>(options.finer.size());
     options_ = &options;
-    map_options_ = options.map;
-    finer_ = !options.finer.empty();
     begin_level();
     mapped_.corners = map_patches(best_.layout, progress.part(0, 0.05));
     mapped_.surface = best_.layout;
@@ -88,13 +88,50 @@ class LayoutSearch {
   }
 
  private:
+  // Maps on their way to the surface itself, each beside what is done meanwhile.
+  class Carriers {
+   public:
+    ~Carriers() {
+      try {
+        tasks_.cancel();
+        tasks_.wait();
+      } catch (const Error&) {
+        // Another one is on its way already.
+      }
+    }
+    void carry(CarriedMap& map, const GlobalMapOptions& options, const Progress& progress) {
+      tasks_.run([this, &map, &options, progress] {
+        try {
+          map.carry(std::numeric_limits<double>::infinity(), options, progress);
+        } catch (const Error&) {
+          failed_.store(true, std::memory_order_relaxed);
+          throw;
+        }
+      });
+    }
+    // Throws what a carrier has thrown: where one map cannot be carried, further search is in vain.
+    void check() {
+      if (failed_.load(std::memory_order_relaxed)) tasks_.wait();
+    }
+    void wait() { tasks_.wait(); }
+
+   private:
+    tbb::task_group tasks_;
+    std::atomic<bool> failed_{false};
+  };
+
   void search_finer(LayoutSearchResult& result, const LayoutSearchOptions& options, const Progress& progress) {
     const auto parts = static_cast<double>(options.finer.size());
+    result.stages.reserve(options.finer.size() + 1);  // carriers hold on to them
+    Carriers carriers;
+    const auto keep = [&] {
+      result.stages.push_back({static_cast<int>(best_edits_.size()) - 1, best_});
+      if (!options.finer.empty()) carriers.carry(result.stages.back().map, options.map, progress.part(0, 0));
+    };
     for (std::size_t i = 0; i < options.finer.size(); ++i) {
       const LayoutSearchOptions& finer = options.finer[i];
       const Progress part = progress.part(static_cast<double>(i) / parts, static_cast<double>(i + 1) / parts);
-      // Each map at once: where one cannot be carried back, further search is in vain.
-      if (result.stages.empty() || !best_edits_.back().empty()) keep(result, part.part(0, 0.1));
+      if (result.stages.empty() || !best_edits_.back().empty()) keep();
       options_ = &finer;
       try {
         best_.carry(finer.vertices, finer.map, part.part(0.1, 0.2));
@@ -106,17 +143,13 @@ class LayoutSearch {
       best_edits_.emplace_back();
       edits_ = best_edits_;
       begin_level();
+      carriers.check();
       if (script_ ? !scripted().even.empty() : finer.even_quads > 0) relayout(part);
+      carriers.check();
       improve(part.part(0.2, 1));
     }
-    if (result.stages.empty() || !best_edits_.back().empty()) keep(result, progress.part(1, 1));
-  }
-
-  // Adds the present level's map to the result, on the surface itself if there are finer levels.
-  void keep(LayoutSearchResult& result, const Progress& progress) const {
-    CarriedMap map = best_;
-    if (finer_) map.carry(std::numeric_limits<double>::infinity(), map_options_, progress);
-    result.stages.push_back({static_cast<int>(best_edits_.size()) - 1, std::move(map)});
+    if (result.stages.empty() || !best_edits_.back().empty()) keep();
+    carriers.wait();
   }
 
   // Of the quads of a level so many above the present one: how many times the mean area the largest covers, by the faces whose middles lie in it.
@@ -241,39 +274,64 @@ class LayoutSearch {
     return laid.failure.empty() ? to_patched_surface(laid.layout) : PatchedSurface();
   }
 
-  // Regions whose quads are poor, and even quads for them.
-  std::vector<LayoutScript::EvenLayout> find_even(std::vector<DrawnEdit>& drawn, const Progress& progress) const {
+  // Share of the surface's area, a patch.
+  std::vector<double> area_shares() const {
     const PatchedSurface& s = mapped_.surface;
-    std::vector<double> area(s.patch_count(), 0);
+    std::vector<double> share(s.patch_count(), 0);
     double all = 0;
     for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) {
       const auto& c = s.mesh.faces[f];
-      const double a = 0.5 * (s.mesh.points[c[1]] - s.mesh.points[c[0]]).cross(s.mesh.points[c[2]] - s.mesh.points[c[0]]).norm();
-      area[s.patch[f]] += a;
-      all += a;
+      const double area = 0.5 * (s.mesh.points[c[1]] - s.mesh.points[c[0]]).cross(s.mesh.points[c[2]] - s.mesh.points[c[0]]).norm();
+      share[s.patch[f]] += area;
+      all += area;
     }
-    std::vector<char> poor(s.patch_count(), 0);
-    for (int q = 0; q < s.patch_count(); ++q) poor[q] = energy_[q] > options_->threshold || energy_[q] * all > options_->threshold * area[q] * s.patch_count();
-    std::vector<char> wide = dilated(poor);
-    // A region has a boundary: where all is poor, the best stays.
+    for (double& x : share) x /= all;
+    return share;
+  }
+
+  // Disks of patches of more energy than `least`, the smallest first.
+  std::vector<PatchRegion> uneven_regions(const std::vector<double>& share, double least) const {
+    const PatchedSurface& s = mapped_.surface;
+    std::vector<char> uneven(s.patch_count(), 0);
+    for (int q = 0; q < s.patch_count(); ++q) uneven[q] = energy_[q] > least || energy_[q] > least * share[q] * s.patch_count();
+    std::vector<char> wide = dilated(uneven);
+    // A region has a boundary: where all is uneven, the best stays.
     if (std::find(wide.begin(), wide.end(), 0) == wide.end()) wide[std::min_element(energy_.begin(), energy_.end()) - energy_.begin()] = 0;
     std::vector<PatchRegion> regions = disks(std::move(wide));
-    const auto share_of = [&](const PatchRegion& region) {
-      double sum = 0;
-      for (const int q : region.patches) sum += area[q];
-      return sum / all;
+    std::stable_sort(regions.begin(), regions.end(), [&](const PatchRegion& a, const PatchRegion& b) { return sum_over(a, share) < sum_over(b, share); });
+    return regions;
+  }
+  static double sum_over(const PatchRegion& region, const std::vector<double>& of) {
+    double sum = 0;
+    for (const int q : region.patches) sum += of[q];
+    return sum;
+  }
+
+  // Even quads for the regions that need them.
+  std::vector<LayoutScript::EvenLayout> find_even(std::vector<DrawnEdit>& drawn, const Progress& progress) const {
+    const PatchedSurface& s = mapped_.surface;
+    const std::vector<double> share = area_shares();
+    std::vector<PatchRegion> regions;
+    // How many new quads a region gets where there are `count` in all. The last one makes up for what those that stay are more or fewer than even ones, as far as its own may differ.
+    const auto wanted = [&](std::size_t i, double count) {
+      const double even = std::max(1.0, sum_over(regions[i], share) * options_->even_quads);
+      if (i + 1 < regions.size()) return even;
+      return std::clamp(options_->even_quads - (count - static_cast<double>(regions[i].patches.size())), 0.7 * even, 1.3 * even);
     };
-    std::stable_sort(regions.begin(), regions.end(), [&](const PatchRegion& a, const PatchRegion& b) { return share_of(a) < share_of(b); });
+    // Quads that would do stay, unless there would be too many in all.
+    for (const double part : {1.0, 0.5, 0.25, 0.0}) {
+      regions = uneven_regions(share, part * options_->uneven);
+      double count = s.patch_count();
+      for (std::size_t i = 0; i < regions.size(); ++i) count += wanted(i, count) - static_cast<double>(regions[i].patches.size());
+      if (count <= options_->quads) break;
+    }
     double count = s.patch_count();
     std::vector<LayoutScript::EvenLayout> chosen;
-    for (const PatchRegion& region : regions) {
-      double wanted = share_of(region) * options_->even_quads;
-      // The largest region makes up for what the quads that stay are more or fewer than even ones, as far as its own can differ from these.
-      if (&region == &regions.back()) wanted = std::clamp(options_->even_quads - (count - static_cast<double>(region.patches.size())), 0.7 * wanted, 1.3 * wanted);
-      wanted = std::max(wanted, 1.0);
-      std::optional<DrawnEdit> edit = even_edit(s, region, wanted, 1, progress);
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      const double quads = wanted(i, count);
+      std::optional<DrawnEdit> edit = even_edit(s, regions[i], quads, 1, progress);
       if (!edit) continue;
-      chosen.push_back({edit->edit, wanted, outline_of(*edit, region)});
+      chosen.push_back({edit->edit, quads, outline_of(*edit, regions[i])});
       count += edit->edit.growth();
       drawn.push_back(std::move(*edit));
     }
@@ -565,8 +623,6 @@ class LayoutSearch {
   std::optional<ChartMesh> fresh_;
   MappedSurface mapped_;           // cut along the best layout, or an edited one
   const LayoutSearchOptions* options_ = nullptr;  // of the present level
-  GlobalMapOptions map_options_;   // of the base
-  bool finer_ = false;             // are there finer levels
   std::vector<LevelEdits> best_edits_, edits_{1};
   int most_ = 0;                   // quads that the layout may grow to
   double least_ = 0, excess_ = 0;  // energy of the best and of the fresh map beyond an isometry's, in quads of the present level

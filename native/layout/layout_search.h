@@ -19,8 +19,9 @@ struct LayoutSearchOptions {
   double irregular_price = 0.06;  // ... and a further irregular node
   int rounds = 4;
   int trials = 80;         // a round
-  double threshold = 0;    // of a quad's energy beyond an isometry's, below which it is left as it is
-  double even_quads = 0;   // regions of quads above the threshold are laid out anew first, so that there are about so many in all, as far as the new ones can be of their size; 0: not
+  double threshold = 0;    // of energy a quad beyond an isometry's, below which no edits are tried
+  double even_quads = 0;   // regions of uneven quads are laid out anew first, so that there are about so many in all, as far as the new ones can be of their size; 0: not
+  double uneven = 0;       // ... of more energy beyond an isometry's than this
   double stretch = 0;      // finer levels are worked on only where quads of the last one would cover so many times the mean area
   std::vector<LayoutSearchOptions> finer;  // of the levels above the base
 };

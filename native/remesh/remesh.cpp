@@ -242,8 +242,10 @@ class Remesher {
     LayoutSearchOptions& last = search.finer.back();
     // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
     const double size = quads_for_budget(quads);
-    last.threshold = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
     last.even_quads = size - kRoom;
+    last.vertices = std::max(1500.0, last.vertices * std::min(1.0, size / quads));
+    last.uneven = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
+    last.threshold = excess_of_stretch(options_.stretch_threshold);
     last.quads = static_cast<int>(options_.refinement == Refinement::Uniform ? size : 1.3 * quads);
     last.rounds = 1;
     last.trials = 30;
@@ -532,6 +534,9 @@ class Remesher {
     watch_.start("levels");
     report_["levels"] = Json::array();
     const int depth = h.depth();
+    final_vertices_.clear();
+    for (std::size_t v = 0; v < result_.final_mesh.vertex.size(); ++v) final_vertices_.push_back({result_.final_mesh.vertex[v], v});
+    std::sort(final_vertices_.begin(), final_vertices_.end());
     std::vector<QuadMesh> meshes(depth + 1);
     std::vector<Json> descriptions(depth + 1);
     // The finest, which take the longest, first.
@@ -545,7 +550,8 @@ class Remesher {
         FitOptions coarse;
         coarse.rounds = 1;
         coarse.tangential = 0.1;
-        fit(meshes[j], coarse, 1, j, part);
+        // A level that is nearly the final mesh begins with that and has little left to do.
+        fit(meshes[j], coarse, start_from_final(meshes[j]) ? 0 : 1, j, part);
       }
       descriptions[j] = describe_level(j, last, meshes[j], part);
     });
@@ -554,6 +560,18 @@ class Remesher {
       report_["levels"].push_back(std::move(descriptions[j]));
     }
     watch_.stop();
+  }
+
+  // Puts the vertices of a level where they are in the final mesh, if it has most of that mesh's.
+  bool start_from_final(QuadMesh& mesh) const {
+    std::vector<std::pair<std::size_t, std::size_t>> shared;
+    for (std::size_t v = 0; v < mesh.vertex.size(); ++v) {
+      const auto at = std::lower_bound(final_vertices_.begin(), final_vertices_.end(), std::pair(mesh.vertex[v], std::size_t{0}));
+      if (at != final_vertices_.end() && at->first == mesh.vertex[v]) shared.push_back({v, at->second});
+    }
+    if (2 * shared.size() < final_vertices_.size()) return false;
+    for (const auto& [v, w] : shared) mesh.points[v] = result_.final_mesh.points[w];
+    return true;
   }
 
   static FitOptions final_fit() {
@@ -869,6 +887,7 @@ class Remesher {
   WorkingSurface working_;
   std::optional<DistanceReference> reference_;  // the input, of unit size
   SurfaceDistance final_distance_;
+  std::vector<std::pair<VertexId, std::size_t>> final_vertices_;  // of the final mesh, sorted
   Budget budget_;
   Finest finest_;
   std::optional<Plan> plan_;  // that was given
