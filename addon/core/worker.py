@@ -144,13 +144,14 @@ def _load_arrays(path):
 
 
 def _first_line():
-    line = b""
-    while not line.endswith(b"\n"):
-        piece = os.read(0, 1)
+    """What the parent writes: one line, and nothing after it. A plan in it may be long."""
+    pieces = []
+    while not pieces or not pieces[-1].endswith(b"\n"):
+        piece = os.read(0, 1 << 16)
         if not piece:
             break
-        line += piece
-    return line
+        pieces.append(piece)
+    return b"".join(pieces)
 
 
 def _end_with_parent():
