@@ -20,6 +20,7 @@
 #include "parameterization/patch_extraction.h"
 #include "remesh/adaptive_refinement.h"
 #include "remesh/layout_hierarchy.h"
+#include "remesh/layout_search_options.h"
 #include "remesh/plan.h"
 #include "remesh/plan_regions.h"
 #include "remesh/quality.h"
@@ -59,14 +60,6 @@ class Stopwatch {
   Clock::time_point begin_;
   double total_ = 0;
   Json json_ = Json::object();
-};
-
-// Levels and base size of a mesh with a vertex budget.
-struct Budget {
-  std::int64_t vertices = 0;
-  int levels = 0;
-  double base_size = 0;      // see BaseDomainOptions
-  double boundary_side = 0;
 };
 
 // The last level with operations (0: none), all of whose quads have a map of their own.
@@ -215,82 +208,6 @@ class Remesher {
   // A cube for a ball; around a handle it takes some forty quads until a map to them holds.
   int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus)); }
 
-  // How the layout is searched: on the base alone, or on finer levels too, where skin is grown.
-  LayoutSearchOptions search_options(const BaseDomain& base, int attempt) const {
-    LayoutSearchOptions search;
-    search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
-    search.vertices = 30.0 * base.quads();
-    options_.base == BaseSize::Minimal ? search_from_few(search, base.quads(), attempt) : grow_towers(search, base);
-    return search;
-  }
-
-  void search_from_few(LayoutSearchOptions& search, int base_quads, int attempt) const {
-    // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
-    if (base_quads < 20) {
-      search.rounds = 0;
-      search.map.vertices_a_quad = 1000.0 / base_quads;
-    }
-    search.vertices = std::max(1500.0, search.vertices);
-    // Only disks can be laid out anew, and where there are handles disks are a small part.
-    if (options_.semi_regular || attempt >= 4 || topology_.genus > topology_.components) return;
-    double quads = base_quads;
-    while (quads < kEnoughQuads && static_cast<int>(search.finer.size()) != options_.levels) {
-      quads *= 4;
-      search.finer.push_back(plain_level(quads, attempt == 1 ? 60 : 30));
-    }
-    if (quads < kLeastQuads || search.finer.empty()) return;
-    LayoutSearchOptions& last = search.finer.back();
-    // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
-    const double size = quads_for_budget(quads);
-    last.even_quads = size - kRoom;
-    last.vertices = std::max(1500.0, last.vertices * std::min(1.0, size / quads));
-    last.uneven = excess_of_stretch(std::pow(options_.stretch_threshold, 0.45));
-    last.threshold = excess_of_stretch(options_.stretch_threshold);
-    last.quads = static_cast<int>(options_.refinement == Refinement::Uniform ? size : 1.3 * quads);
-    last.rounds = 1;
-    last.trials = 30;
-  }
-
-  // A fitted base has quads where the shape asks for them; what is far longer than wide grows skin two levels above, where it takes little of the budget. Not for adaptive meshes: they
-  // would begin with all quads of that level.
-  void grow_towers(LayoutSearchOptions& search, const BaseDomain& base) const {
-    constexpr int level = 2;
-    if (options_.semi_regular || options_.base == BaseSize::Given || options_.refinement != Refinement::Uniform || budget_.levels <= level) return;
-    const double cells = std::pow(4.0, level);
-    for (int j = 1; j <= level; ++j) search.finer.push_back(plain_level(base.quads() * std::pow(4.0, j), 30));
-    search.stretch = options_.stretch_threshold;
-    LayoutSearchOptions& last = search.finer.back();
-    last.threshold = excess_of_stretch(options_.stretch_threshold);
-    last.quads = static_cast<int>(cells * (budget_.base_size - budget_.boundary_side * base.boundary_sides()));
-    last.rounds = 2;
-    last.trials = 30;
-  }
-
-  // A level that is passed through: quadrisected, on so many vertices a quad.
-  static LayoutSearchOptions plain_level(double quads, double vertices) {
-    LayoutSearchOptions level;
-    level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
-    level.vertices = std::max(1500.0, vertices * quads);
-    level.rounds = 0;
-    return level;
-  }
-
-  // Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too few to choose from. Two levels with
-  // operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice, and neither the distances nor the angles are better.
-  static constexpr double kLeastQuads = 60, kEnoughQuads = 250;
-  // For one ring of quads around a feature that sticks out, where that costs next to nothing of the budget.
-  static constexpr double kRoom = 4;
-
-  // Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
-  static double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
-
-  // The number near `quads` of which a whole number of levels makes a mesh of the size asked for.
-  double quads_for_budget(double quads) const {
-    double size = static_cast<double>(budget_.vertices) - static_cast<double>(topology_.euler);
-    while (size > 1.6 * quads) size /= 4;
-    return size;
-  }
-
   void try_base(int attempt) {
     Plan::Origin origin;
     origin.surface = fingerprint(result_.repaired);
@@ -305,9 +222,9 @@ class Remesher {
       if (base_options.size < 60) base_options.least = static_cast<int>(base_options.size);
     }
     base_options.seed = options_.seed + 1000003ull * (attempt + first_attempt_);
-    if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= kRoom;
+    if (options_.base == BaseSize::Auto && base_options.size > 280) base_options.size -= kRoomForARing;
     const BaseDomain base = make_base(origin);
-    BaseMap map = map_to_base(working_.mesh, base, search_options(base, attempt), progress_.part(0.15, 0.5));
+    BaseMap map = map_to_base(working_.mesh, base, layout_search_options(options_, budget_, topology_, base, attempt), progress_.part(0.15, 0.5));
     origin.level = map.script.levels.front();
     install(std::move(map), origin);
   }

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/layout_search_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_mesh {
+namespace {
+
+// Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too few to choose from. Two levels with
+// operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice, and neither the distances nor the angles are better.
+constexpr double kLeastQuads = 60, kEnoughQuads = 250;
+// Where skin is grown on a fitted base: so many levels above it, where towers take little of the budget.
+constexpr int kTowerLevel = 2;
+
+// Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
+double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
+
+// A level that is passed through: quadrisected, on so many vertices a quad.
+LayoutSearchOptions plain_level(double quads, double vertices) {
+  LayoutSearchOptions level;
+  level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
+  level.vertices = std::max(1500.0, vertices * quads);
+  level.rounds = 0;
+  return level;
+}
+
+// The number near `quads`, with so many sides on the boundary, of which a whole number of levels makes a mesh of the size asked for.
+double quads_for_budget(const Budget& budget, const TopologySummary& topology, double quads, double boundary_sides) {
+  const auto vertices = static_cast<double>(budget.vertices - topology.euler);
+  for (double parts = 1;; parts *= 2) {
+    const double size = vertices / (parts * parts) - 0.5 * boundary_sides / parts;
+    if (size <= 1.6 * quads) return size;
+  }
+}
+
+void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base, int attempt) {
+  // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
+  if (base.quads() < 20) {
+    search.rounds = 0;
+    search.map.vertices_a_quad = 1000.0 / base.quads();
+  }
+  search.vertices = std::max(1500.0, search.vertices);
+  // Only disks can be laid out anew, and where there are handles disks are a small part.
+  if (options.semi_regular || attempt >= 4 || topology.genus > topology.components) return;
+  double quads = base.quads(), sides = base.boundary_sides();
+  while (quads < kEnoughQuads && static_cast<int>(search.finer.size()) != options.levels) {
+    quads *= 4;
+    sides *= 2;
+    search.finer.push_back(plain_level(quads, attempt == 1 ? 60 : 30));
+  }
+  if (quads < kLeastQuads || search.finer.empty()) return;
+  LayoutSearchOptions& last = search.finer.back();
+  // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
+  const double size = quads_for_budget(budget, topology, quads, sides);
+  last.even_quads = size - kRoomForARing;
+  last.vertices = std::max(1500.0, last.vertices * std::min(1.0, size / quads));
+  last.uneven = excess_of_stretch(std::pow(options.stretch_threshold, 0.45));
+  last.threshold = excess_of_stretch(options.stretch_threshold);
+  last.quads = static_cast<int>(options.refinement == Refinement::Uniform ? size : 1.3 * quads);
+  last.rounds = 1;
+  last.trials = 30;
+}
+
+// A fitted base has quads where the shape asks for them; what is far longer than wide grows skin on a level above. Not for adaptive meshes: they would begin with all quads of that level.
+void grow_towers(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const BaseDomain& base) {
+  if (options.semi_regular || options.base == BaseSize::Given || options.refinement != Refinement::Uniform || budget.levels <= kTowerLevel) return;
+  const double cells = std::pow(4.0, kTowerLevel);
+  for (int j = 1; j <= kTowerLevel; ++j) search.finer.push_back(plain_level(base.quads() * std::pow(4.0, j), 30));
+  search.stretch = options.stretch_threshold;
+  LayoutSearchOptions& last = search.finer.back();
+  last.threshold = excess_of_stretch(options.stretch_threshold);
+  last.quads = static_cast<int>(cells * (budget.base_size - budget.boundary_side * base.boundary_sides()));
+  last.rounds = 2;
+  last.trials = 30;
+}
+
+}  // namespace
+
+LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base, int attempt) {
+  LayoutSearchOptions search;
+  search.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
+  search.vertices = 30.0 * base.quads();
+  if (options.base == BaseSize::Minimal)
+    grow_skin(search, options, budget, topology, base, attempt);
+  else
+    grow_towers(search, options, budget, base);
+  return search;
+}
+
+}  // namespace hybrid_mesh
