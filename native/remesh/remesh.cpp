@@ -212,25 +212,26 @@ class Remesher {
 
   std::int64_t vertices_at(int level) const { return uniform_vertices(finest_.quads, topology_.euler, finest_.boundary_sides, level - finest_.level); }
 
-  // A cube for a ball; around a handle it takes some forty quads until a map to them holds.
-  int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus)); }
+  // A cube for a ball, and four quads around a hole, with which its boundary has no corners; around a handle it takes some forty quads until a map to them holds.
+  int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus) + 4.0 * topology_.boundary_loops); }
 
   // How the layout is searched: on the base alone, or on finer levels too, where skin is grown.
   LayoutSearchOptions search_options(const BaseDomain& base, int attempt) const {
     LayoutSearchOptions search;
     search.quads = std::max(base.quads(), static_cast<int>(budget_.base_size - budget_.boundary_side * base.boundary_sides()));
     search.vertices = 30.0 * base.quads();
-    options_.base == BaseSize::Minimal ? search_from_few(search, base.quads(), attempt) : grow_towers(search, base);
+    options_.base == BaseSize::Minimal ? search_from_few(search, base, attempt) : grow_towers(search, base);
     return search;
   }
 
-  void search_from_few(LayoutSearchOptions& search, int base_quads, int attempt) const {
+  void search_from_few(LayoutSearchOptions& search, const BaseDomain& base, int attempt) const {
+    const int base_quads = base.quads();
     // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
     if (base_quads < 20) {
       search.rounds = 0;
       search.map.vertices_a_quad = 1000.0 / base_quads;
     }
-    search.vertices = std::max(1500.0, search.vertices);
+    search.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, search.vertices);
     // Only disks can be laid out anew, and where there are handles disks are a small part.
     if (options_.semi_regular || attempt >= 4 || topology_.genus > topology_.components) return;
     double quads = base_quads;
