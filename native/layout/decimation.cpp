@@ -29,6 +29,8 @@ class Decimation {
   Decimation(EditMesh& mesh, const std::vector<Vec3>& points, const DecimationOptions& options, std::vector<MeshEdit>& log)
       : mesh_(mesh), points_(points), options_(options), log_(log), quadrics_(points.size()) {
     valences_.assign(points.size(), 0);
+    if (options.fixed.empty()) loop_ = mesh.boundary_loops();
+    if (std::all_of(loop_.begin(), loop_.end(), [](int loop) { return loop < 0; })) loop_.clear();
     stamps_.assign(points.size(), 0);
     for (std::size_t f = 0; f < mesh.alive.size(); ++f)
       if (mesh.alive[f]) add_face(static_cast<int>(f));
@@ -44,7 +46,12 @@ class Decimation {
     int next_flips = static_cast<int>(0.7 * std::min<double>(initial, 12.0 * options_.target_faces));
     refill();
     int steps = 0;
-    while ((mesh_.face_count > options_.target_faces || loose_ > 0) && !heap_.empty()) {
+    while (mesh_.face_count > options_.target_faces || loose_ > 0) {
+      if (heap_.empty() && !loop_.empty() && !flipped_) {
+        flips();
+        refill();
+      }
+      if (heap_.empty()) break;
       if (++steps % 512 == 0)
         progress(std::clamp((std::log(initial) - std::log(mesh_.face_count)) / std::max(1e-9, std::log(initial) - std::log(options_.target_faces)), 0.0, 1.0));
       const Candidate best = heap_.top();
@@ -136,6 +143,15 @@ class Decimation {
   // On a boundary that is to be left with the fixed vertices only.
   bool is_loose(int v) const { return !options_.fixed.empty() && !options_.fixed[v] && mesh_.is_boundary(v); }
 
+  // Would an inner edge join two vertices of one boundary loop? A map of the surface at this stage could give a triangle between it and the boundary no area, where a straight side of
+  // the base runs along it. What only decides on the base, from the first flips on, may have such edges.
+  bool makes_chord(int h) {
+    const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
+    if (loop_.empty() || flipped_ || loop_[u] < 0 || loop_[v] >= 0) return false;
+    mesh_.ring(v, around_);
+    return std::any_of(around_.begin(), around_.end(), [&](int w) { return loop_[w] == loop_[u] && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
+  }
+
   void push(int v) {
     ++stamps_[v];
     if (!options_.fixed.empty() && options_.fixed[v]) return;
@@ -150,7 +166,7 @@ class Decimation {
     // The cheapest allowed one; the topological test is dearer than the cost of most.
     std::sort(scratch_.begin(), scratch_.end(), [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.half_edge < b.half_edge; });
     for (const Candidate& c : scratch_)
-      if (mesh_.can_collapse(c.half_edge)) {
+      if (mesh_.can_collapse(c.half_edge) && !makes_chord(c.half_edge)) {
         heap_.push(c);
         return;
       }
@@ -163,7 +179,7 @@ class Decimation {
   }
 
   void collapse(int h) {
-    if (!mesh_.can_collapse(h)) return;
+    if (!mesh_.can_collapse(h) || makes_chord(h)) return;
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
     valences_[u] += valences_[v] - (mesh_.is_boundary(v) ? 3 : 4);
     --valences_[mesh_.apex(h)];
@@ -201,6 +217,7 @@ class Decimation {
   }
 
   void flips() {
+    flipped_ = true;
     for (int sweep = 0; sweep < 3; ++sweep) {
       int count = 0;
       for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
@@ -225,7 +242,9 @@ class Decimation {
   std::vector<std::uint32_t> stamps_;
   std::priority_queue<Candidate> heap_;
   std::vector<Candidate> scratch_;
-  std::vector<int> ring_;
+  std::vector<int> ring_, around_;
+  std::vector<int> loop_;  // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
+  bool flipped_ = false;
   int loose_ = 0;
 };
 

@@ -51,6 +51,8 @@ class MapSmoothing {
     merge_insertions(0.01);
     for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
       if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Cone && is_inserted(v)) settle(v);
+    for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+      if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Pinned && is_inserted(v)) settle_corner(v);
     // Triangles without area may come in between: what is left in the end are the triangles that were cut.
     merge_insertions(0.01);
     merge_insertions(1e-4, -1);
@@ -212,8 +214,75 @@ class MapSmoothing {
     if (next < 0) throw Error(ErrorCode::Internal, "an irregular node of the base cannot be moved to a vertex");
   }
 
-  // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones near it, which may ask a triangle for an
-  // angle that none can have, give way.
+  // A corner of the base on the boundary that is inside an edge of the surface goes to one of the edge's ends, the nearer one if the map unfolds there.
+  void settle_corner(int corner) {
+    const auto length_to = [&](int v) { return (c_.points[v] - c_.points[corner]).norm(); };
+    const bool onward = length_to(next_on_boundary(corner)) < length_to(before_on_boundary(corner));
+    for (const bool forward : {onward, !onward}) {
+      int at = corner;
+      while (at >= 0 && is_inserted(at)) at = move_corner(at, forward);
+      if (at >= 0) return;
+    }
+    throw Error(ErrorCode::Internal, "a corner of the base on the boundary cannot be moved to a vertex");
+  }
+
+  std::vector<int> corners_near(int v) const {
+    std::vector<int> corners, region{v};
+    grow(region, 2);
+    for (const int w : region)
+      if (c_.kind[w] == ChartMesh::Kind::Pinned) corners.push_back(w);
+    return corners;
+  }
+
+  // Corners of the boundary within two rings of v go along it, a few vertices to either side, until `done`.
+  template <class Done>
+  bool move_corners_near(int v, const Done& done) {
+    for (int corner : corners_near(v))
+      for (const bool forward : {true, false})
+        for (int steps = forward ? 3 : 6; steps > 0; --steps) {
+          const int moved = move_corner(corner, forward);
+          if (moved < 0) break;
+          corner = moved;
+          if (done(corner)) return true;
+        }
+    return false;
+  }
+
+  int last_half_edge(int v) const {
+    int h = c_.mesh.out[v];
+    while (c_.mesh.ccw(h) >= 0) h = c_.mesh.ccw(h);
+    return h;
+  }
+  int next_on_boundary(int v) const { return c_.mesh.to(c_.mesh.out[v]); }
+  int before_on_boundary(int v) const { return c_.mesh.apex(last_half_edge(v)); }
+
+  // The vertex after it on the boundary, or the one before, becomes the corner in its place, and it a vertex of the side on the other side. A corner in the way moves on first.
+  // Returns the vertex, or -1 where the map does not unfold.
+  int move_corner(int corner, bool forward, int depth = 0) {
+    const int first = c_.mesh.out[corner], last = last_half_edge(corner);
+    const int leaves = forward ? EditMesh::next(first) : prev(last), u = c_.mesh.origin[leaves];
+    if (!c_.movable(u) && (depth > 2 || move_corner(u, forward, depth + 1) < 0)) return -1;
+    const std::vector<Complex> before = c_.uv;
+    const ChartMesh::Kind kind = c_.kind[u];
+    const Complex place = c_.uv[corner], other = forward ? c_.corner[last].back(c_.at(prev(last))) : c_.corner[first].back(c_.at(EditMesh::next(first)));
+    c_.uv[u] = c_.corner[leaves].back(c_.at(forward ? first : last));
+    c_.kind[u] = ChartMesh::Kind::Pinned;
+    const bool along_u = std::abs((other - place).real()) > std::abs((other - place).imag());
+    c_.uv[corner] = along_u ? Complex(0.5 * (place + other).real(), place.imag()) : Complex(place.real(), 0.5 * (place + other).imag());
+    c_.kind[corner] = along_u ? ChartMesh::Kind::SlideU : ChartMesh::Kind::SlideV;
+    std::vector<int> region{corner, u};
+    for (int rings = 1; rings < 4; ++rings) {
+      grow(region, 1);
+      if (stars_.unfold(region)) return u;
+    }
+    c_.uv = before;
+    c_.kind[u] = kind;
+    c_.kind[corner] = ChartMesh::Kind::Pinned;
+    return -1;
+  }
+
+  // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones and corners of the boundary
+  // near it, which may ask a triangle for an angle that none can have, give way.
   void merge_by_force(const Progress& progress) {
     for (int pass = 0; pass < 8; ++pass) {
       progress.check();
@@ -222,6 +291,7 @@ class MapSmoothing {
         if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v, pass)) left.push_back(v);
       if (left.empty()) return;
       for (const int v : left) {
+        if (move_corners_near(v, [&](int corner) { return !is_inserted(corner) && unfolds_when_merged(v, pass); })) continue;
         std::vector<int> region{v};
         grow(region, pass < 2 ? 1 : 2);
         for (const int w : region)
@@ -410,6 +480,8 @@ class MapSmoothing {
           placed = c_.undo_collapse(h);
           if (!evicted) break;
         }
+        std::vector<Complex> before;
+        if (!placed) before = c_.uv;
         // Where its ring has no kernel, the ring is given the chance to become rounder first.
         for (int tries = 0; tries < 3 && !placed && !unfolds_around(v, 2, 24); ++tries) {
           c_.collapse(h);
@@ -419,6 +491,21 @@ class MapSmoothing {
             for (const int w : region)
               if (c_.movable(w)) stars_.relax(w, true);
           placed = c_.undo_collapse(h);
+        }
+        if (!placed && !corners_near(v).empty()) {
+          // Collapsed again, the map is unfolded as it was.
+          const auto take_back = [&] {
+            c_.collapse(h);
+            c_.uv = before;
+          };
+          take_back();
+          placed = move_corners_near(kept, [&](int) {
+            before = c_.uv;
+            if (c_.undo_collapse(h) || unfolds_around(v, 2, 24)) return true;
+            take_back();
+            return false;
+          });
+          if (!placed) placed = c_.undo_collapse(h);
         }
         if (!placed) {
           ++report_.unplaced;

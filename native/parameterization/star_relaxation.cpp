@@ -102,6 +102,11 @@ void StarRelaxation::relax_folded(int v, double eps) {
   const Complex d = newton_step(v, q);
   if (!std::isfinite(d.real()) || !std::isfinite(d.imag())) return;
   double t = 1;
+  if (c_.kind[v] != ChartMesh::Kind::Free) {
+    // Never past the neighbours on the boundary: these keep their order.
+    for (const Complex& end : {star_.front().a - p, star_.back().b - p})
+      if (const double along = (end * std::conj(d)).real(); along > 0) t = std::min(t, 0.9 * along / std::norm(d));
+  }
   for (int tries = 0; tries < 8; ++tries, t *= 0.5) {
     const Complex x = p + t * d;
     double energy = 0;
@@ -117,6 +122,16 @@ void StarRelaxation::relax_folded(int v, double eps) {
   }
 }
 
+// On a straight boundary a vertex beyond its neighbours has a star of a full turn instead of half a one, without any folded triangle, and a corner of the boundary near it another angle.
+bool StarRelaxation::is_wound(int v) const {
+  switch (c_.kind[v]) {
+    case ChartMesh::Kind::Cone: return false;
+    case ChartMesh::Kind::SlideU:
+    case ChartMesh::Kind::SlideV: return c_.angle_at(v) > 4;
+    default: return c_.angle_at(v) > 9;
+  }
+}
+
 bool StarRelaxation::is_unfolded(const std::vector<int>& vertices) const {
   for (const int v : vertices) {
     int h = c_.mesh.out[v];
@@ -125,14 +140,14 @@ bool StarRelaxation::is_unfolded(const std::vector<int>& vertices) const {
       if (!(cross(c_.at(EditMesh::next(h)) - p, c_.at(EditMesh::prev(h)) - p) > 0)) return false;
       h = c_.mesh.ccw(h);
     } while (h >= 0 && h != c_.mesh.out[v]);
-    if (c_.kind[v] != ChartMesh::Kind::Cone && c_.angle_at(v) > 9) return false;
+    if (is_wound(v)) return false;
   }
   // The stars of the vertices around share their faces, and may have been wound up with them.
   std::vector<int> ring;
   for (const int v : vertices) {
     c_.mesh.ring(v, ring);
     for (const int w : ring)
-      if (c_.kind[w] != ChartMesh::Kind::Cone && c_.angle_at(w) > 9) return false;
+      if (is_wound(w)) return false;
   }
   return true;
 }

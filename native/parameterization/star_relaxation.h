@@ -37,6 +37,7 @@ class StarRelaxation {
   void gather(int v);
   template <class Density>
   Quadratic expand(const Complex& p, const Density& density) const;
+  bool is_wound(int v) const;
   Complex newton_step(int v, Quadratic& q) const;
   double star_energy(const Complex& p) const;
 

@@ -40,7 +40,7 @@ void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const 
     search.rounds = 0;
     search.map.vertices_a_quad = 1000.0 / base.quads();
   }
-  search.vertices = std::max(1500.0, search.vertices);
+  search.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, search.vertices);
   // Only disks can be laid out anew, and where there are handles disks are a small part.
   if (options.semi_regular || attempt >= 4 || topology.genus > topology.components) return;
   double quads = base.quads(), sides = base.boundary_sides();

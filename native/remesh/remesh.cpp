@@ -205,8 +205,8 @@ class Remesher {
 
   std::int64_t vertices_at(int level) const { return uniform_vertices(finest_.quads, topology_.euler, finest_.boundary_sides, level - finest_.level); }
 
-  // A cube for a ball; around a handle it takes some forty quads until a map to them holds.
-  int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus)); }
+  // A cube for a ball, and four quads around a hole, with which its boundary has no corners; around a handle it takes some forty quads until a map to them holds.
+  int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus) + 4.0 * topology_.boundary_loops); }
 
   void try_base(int attempt) {
     Plan::Origin origin;

@@ -3,7 +3,31 @@
 
 #include <algorithm>
 
+#include "surface/edit_mesh.h"
+
 namespace hybrid_mesh {
+namespace {
+
+// A side of the base that runs along the boundary is a straight line in the map: a triangle between an inner edge that joins two of its vertices and that line would have no area.
+void split_chords(TriangleSurface& mesh, std::vector<PointSource>& source) {
+  if (std::find(mesh.opposite.begin(), mesh.opposite.end(), -1) == mesh.opposite.end()) return;
+  const std::vector<int> loop = EditMesh(mesh).boundary_loops();
+  const int points = static_cast<int>(mesh.points.size());
+  for (bool any = true; any;) {
+    any = false;
+    std::vector<char> split(mesh.faces.size(), 0);
+    for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
+      const int o = mesh.opposite[h], a = mesh.from(h), b = mesh.to(h);
+      if (o < h || a >= points || b >= points || loop[a] < 0 || loop[a] != loop[b] || split[h / 3] || split[o / 3]) continue;
+      split[h / 3] = split[o / 3] = 1;
+      split_inner_edge(mesh, source, h);
+      any = true;
+    }
+    if (any) connect_half_edges(mesh);
+  }
+}
+
+}  // namespace
 
 Placement placement_of(const std::vector<Vec3>& points) {
   Placement p;
@@ -67,6 +91,7 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
     m.source_face = std::move(source_face);
     connect_half_edges(m);
   }
+  split_chords(w.mesh, w.source);
   return w;
 }
 

@@ -54,6 +54,17 @@ void EditMesh::ring(int v, std::vector<int>& vertices) const {
   } while (h != out[v]);
 }
 
+std::vector<int> EditMesh::boundary_loops() const {
+  std::vector<int> loop(out.size(), -1);
+  int count = 0;
+  for (int first = 0; first < static_cast<int>(out.size()); ++first) {
+    if (!vertex_live[first] || !is_boundary(first) || loop[first] >= 0) continue;
+    for (int v = first; loop[v] < 0; v = to(out[v])) loop[v] = count;
+    ++count;
+  }
+  return loop;
+}
+
 int EditMesh::find(int a, int b) const {
   int h = out[a];
   do {
