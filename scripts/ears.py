@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inside Blender: a picture of what irregular operations are for. A bunny is remeshed semi-regularly from as few quads as its map allows, and again with cubes
+"""Inside Blender: a picture of what irregular operations are for. A bunny is remeshed semi-regularly from few quads, and again with cubes
 on the quad of level 3 that each ear is squeezed into.
 
 blender --background --factory-startup --python ears.py -- STAGE BUNNY.blend PICTURE.png"""
@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import tiles  # noqa: E402
 from tiles import attribute, coordinates  # noqa: E402
 
-LEVEL, FINEST, CUBES, EARS = 3, 6, 3, 2
+BASE, LEVEL, FINEST, CUBES, EARS = 14, 3, 6, 3, 2
 
 
 def head(mesh, low, high):
@@ -34,7 +34,7 @@ def main():
     bunny = next(one for one in bpy.context.scene.objects if one.type == "MESH")
     bunny.select_set(True)
     bpy.context.view_layer.objects.active = bunny
-    assert bpy.ops.hybrid_mesh.remesh(vertices=0, levels=FINEST, base="MIN", semi_regular=True) == {"FINISHED"}
+    assert bpy.ops.hybrid_mesh.remesh(vertices=0, levels=FINEST, base="GIVEN", base_quads=BASE, semi_regular=True) == {"FINISHED"}
     plain = tiles.levels_of(bpy.context.object.hybrid_mesh.hierarchy)
     levels = plain
     for _ in range(EARS):
