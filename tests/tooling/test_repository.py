@@ -118,6 +118,28 @@ def test_no_file_names_a_machine():
     assert found == []
 
 
+def text_chunks(image):
+    """The keywords of what a PNG says in words: renderers write paths and dates there."""
+    found, at = [], 8
+    while at < len(image):
+        length, kind = int.from_bytes(image[at : at + 4], "big"), image[at + 4 : at + 8]
+        if kind in {b"tEXt", b"zTXt", b"iTXt"}:
+            found.append(image[at + 8 : at + 8 + length].split(b"\0")[0].decode("latin-1"))
+        at += 12 + length
+    return found
+
+
+def test_pictures_say_nothing_of_the_machine_that_made_them():
+    pictures = [path for path in files() if path.suffix == ".png"]
+    assert pictures
+    assert {str(path): chunks for path in pictures if (chunks := text_chunks((ROOT / path).read_bytes()))} == {}
+
+
+def test_the_words_of_a_picture_are_seen():
+    chunk = b"File\0a path"
+    assert text_chunks(bytes(8) + len(chunk).to_bytes(4, "big") + b"tEXt" + chunk + bytes(4)) == ["File"]
+
+
 def test_the_version_is_the_same_everywhere():
     version = re.search(r"project\(hybrid_mesh VERSION ([\d.]+)", text_of("CMakeLists.txt"))[1]
     assert re.search(r'^version = "([^"]+)"', text_of("addon/blender_manifest.toml"), re.MULTILINE)[1] == version
