@@ -96,15 +96,15 @@ class LayoutSearch {
       try {
         tasks_.cancel();
         tasks_.wait();
-      } catch (const Error&) {
-        // Another one is on its way already.
+      } catch (...) {
+        // Another exception is on its way already.
       }
     }
     void carry(CarriedMap& map, const GlobalMapOptions& options, const Progress& progress) {
       tasks_.run([this, &map, &options, progress] {
         try {
           map.carry(std::numeric_limits<double>::infinity(), options, progress);
-        } catch (const Error&) {
+        } catch (...) {
           failed_.store(true, std::memory_order_relaxed);
           throw;
         }
