@@ -678,6 +678,7 @@ class LayoutSearch {
       GlobalMapOptions options = options_->map;
       options.newton_steps = 3;
       options.cone_rounds = 1;
+      options.corners_move = false;  // the rim is held
       options.sweeps = 1;
       const GlobalMapReport report = smooth_map(charts, local.surface, options, progress);
       return before - (report.energy - 1) * area;

@@ -161,7 +161,9 @@ LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const R
     for (int i = 0; i < 3; ++i)
       if (part.surface.mesh.opposite[3 * f + i] < 0 && mapped.surface.mesh.opposite[3 * part.face[f] + i] >= 0)
         for (const int v : {part.surface.mesh.faces[f][i], part.surface.mesh.faces[f][(i + 1) % 3]}) charts.kind[v] = ChartMesh::Kind::Pinned;
-  smooth_map(charts, part.surface, GlobalMapOptions(), progress.part(0.5, 0.8));
+  GlobalMapOptions options;
+  options.corners_move = false;  // ends of the rim are among them
+  smooth_map(charts, part.surface, options, progress.part(0.5, 0.8));
 
   std::vector<PatchMap> fresh(mapped.surface.patch_count());
   std::vector<char> changed(fresh.size(), 0);

@@ -16,6 +16,25 @@ namespace {
 
 double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - a.imag() * b.real(); }
 
+// Where some vertices are, to come back to.
+class KeptMap {
+ public:
+  KeptMap(const ChartMesh& charts, const std::vector<int>& vertices) {
+    for (const int v : vertices) kept_.push_back({v, charts.uv[v], charts.kind[v]});
+  }
+  void restore(ChartMesh& charts) const {
+    for (const Vertex& v : kept_) charts.uv[v.vertex] = v.uv, charts.kind[v.vertex] = v.kind;
+  }
+
+ private:
+  struct Vertex {
+    int vertex;
+    Complex uv;
+    ChartMesh::Kind kind;
+  };
+  std::vector<Vertex> kept_;
+};
+
 class MapSmoothing {
  public:
   MapSmoothing(ChartMesh& charts, const GlobalMapOptions& options) : c_(charts), options_(options), density_{options.theta}, stars_(charts, density_) {}
@@ -33,9 +52,7 @@ class MapSmoothing {
     report_.coarse_vertices = c_.mesh.vertex_count;
     newton(options_.newton_steps, progress.part(0.3, 0.45));
     for (int round = 0; round < options_.cone_rounds; ++round) {
-      const int moved = move_cones(c_, density_, original_);
-      report_.cone_moves += moved;
-      if (moved == 0) break;
+      if (move_irregular_nodes(round == 0) == 0) break;
       newton(2, progress.part(0.45, 0.6));
     }
     report_.energy_coarse = mean_energy();
@@ -258,26 +275,25 @@ class MapSmoothing {
 
   // The vertex after it on the boundary, or the one before, becomes the corner in its place, and it a vertex of the side on the other side. A corner in the way moves on first.
   // Returns the vertex, or -1 where the map does not unfold.
-  int move_corner(int corner, bool forward, int depth = 0) {
+  int move_corner(int corner, bool forward, int sweeps = 24, int depth = 0) {
     const int first = c_.mesh.out[corner], last = last_half_edge(corner);
     const int leaves = forward ? EditMesh::next(first) : prev(last), u = c_.mesh.origin[leaves];
-    if (!c_.movable(u) && (depth > 2 || move_corner(u, forward, depth + 1) < 0)) return -1;
-    const std::vector<Complex> before = c_.uv;
-    const ChartMesh::Kind kind = c_.kind[u];
+    if (!c_.movable(u) && (depth > 2 || move_corner(u, forward, sweeps, depth + 1) < 0)) return -1;
+    std::vector<int> region{corner, u};
+    grow(region, 3);
+    const KeptMap kept(c_, region);
     const Complex place = c_.uv[corner], other = forward ? c_.corner[last].back(c_.at(prev(last))) : c_.corner[first].back(c_.at(EditMesh::next(first)));
     c_.uv[u] = c_.corner[leaves].back(c_.at(forward ? first : last));
     c_.kind[u] = ChartMesh::Kind::Pinned;
     const bool along_u = std::abs((other - place).real()) > std::abs((other - place).imag());
     c_.uv[corner] = along_u ? Complex(0.5 * (place + other).real(), place.imag()) : Complex(place.real(), 0.5 * (place + other).imag());
     c_.kind[corner] = along_u ? ChartMesh::Kind::SlideU : ChartMesh::Kind::SlideV;
-    std::vector<int> region{corner, u};
+    region = {corner, u};
     for (int rings = 1; rings < 4; ++rings) {
       grow(region, 1);
-      if (stars_.unfold(region)) return u;
+      if (stars_.unfold(region, sweeps)) return u;
     }
-    c_.uv = before;
-    c_.kind[u] = kind;
-    c_.kind[corner] = ChartMesh::Kind::Pinned;
+    kept.restore(c_);
     return -1;
   }
 
@@ -385,6 +401,61 @@ class MapSmoothing {
         if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) stars_.relax(v, true);
       progress((sweep + 1.0) / sweeps);
     }
+  }
+
+  // --- irregular nodes of the base -----------------------------------------------------------------------------------------------------
+  // Moves those to neighbouring vertices that lower the energy by it. In a further round, corners that stayed are not tried again.
+  int move_irregular_nodes(bool first_round) {
+    if (first_round) corners_.clear();
+    if (first_round && options_.corners_move)
+      for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+        if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Pinned && c_.mesh.is_boundary(v)) corners_.push_back(v);
+    std::vector<int> moved;
+    for (const int corner : corners_) {
+      int at = lowers_energy(corner, true);
+      if (at < 0) at = lowers_energy(corner, false);
+      if (at >= 0) moved.push_back(at);
+    }
+    corners_ = std::move(moved);
+    const int count = move_cones(c_, density_, original_) + static_cast<int>(corners_.size());
+    report_.cone_moves += count;
+    return count;
+  }
+
+  // Moves a corner of the boundary along it to the next vertex if the energy is lower then. Returns that vertex or -1.
+  int lowers_energy(int corner, bool forward) {
+    const int u = forward ? next_on_boundary(corner) : before_on_boundary(corner);
+    if (!c_.movable(u) || !(original_.empty() || original_[u])) return -1;
+    std::vector<int> region{corner, u};
+    grow(region, 3);
+    const auto relaxed_energy = [&] {
+      for (int sweep = 0; sweep < 5; ++sweep)
+        for (const int w : region)
+          if (c_.movable(w)) stars_.relax(w, false);
+      return energy_around(region);
+    };
+    const double before = relaxed_energy();
+    const KeptMap kept(c_, region);
+    if (move_corner(corner, forward, 8) == u && relaxed_energy() < before * (1 - 1e-4)) return u;
+    kept.restore(c_);
+    return -1;
+  }
+
+  // Of the triangles with a vertex in the region.
+  double energy_around(const std::vector<int>& region) const {
+    std::vector<int> faces;
+    for (const int v : region) {
+      int h = c_.mesh.out[v];
+      do {
+        faces.push_back(h / 3);
+        h = c_.mesh.ccw(h);
+      } while (h >= 0 && h != c_.mesh.out[v]);
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    double sum = 0;
+    for (const int f : faces) sum += stars_.face_energy(f);
+    return sum;
   }
 
   // --- the collapse hierarchy ------------------------------------------------------------------------------------------------------
@@ -684,6 +755,7 @@ class MapSmoothing {
   GlobalMapReport report_;
   std::vector<int> log_;
   std::vector<PointSource> source_;  // per vertex; empty where nothing was cut
+  std::vector<int> corners_;         // of the boundary, to be moved in the present round
   std::vector<char> original_;       // per vertex whether it is a point of the surface that was cut; empty: all are
 };
 

@@ -47,7 +47,7 @@ void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const 
   while (quads < kEnoughQuads && static_cast<int>(search.finer.size()) != options.levels) {
     quads *= 4;
     sides *= 2;
-    search.finer.push_back(plain_level(quads, attempt == 1 ? 60 : 30));
+    search.finer.push_back(plain_level(quads, attempt == 1 ? 60 : sides > 0 ? 30 : 15));
   }
   if (quads < kLeastQuads || search.finer.empty()) return;
   LayoutSearchOptions& last = search.finer.back();

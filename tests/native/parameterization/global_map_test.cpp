@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "generated_surfaces.h"
@@ -116,6 +118,70 @@ TEST(GlobalMap, StaysBijectiveAndGetsBetterOnEveryKindOfSurface) {
     double whole = 0;
     for (const auto& f : m.surface.faces) whole += 0.5 * (m.surface.points[f[1]] - m.surface.points[f[0]]).cross(m.surface.points[f[2]] - m.surface.points[f[0]]).norm();
     EXPECT_NEAR(area, whole, 1e-6 * whole);
+  }
+}
+
+// A square of which the four corners of its one quad lie `turns` vertices farther along the boundary: its vertices wind around the middle, the more the farther out.
+PatchedSurface wound_square(int half, int turns) {
+  const int n = 2 * half + 1;
+  const auto index = [&](int x, int y) { return (y + half) * n + x + half; };
+  PatchedSurface s;
+  for (int y = -half; y <= half; ++y)
+    for (int x = -half; x <= half; ++x) {
+      const int r = std::max(std::abs(x), std::abs(y));
+      // Along the square of vertices at that distance, counter-clockwise from its corner at the lower left.
+      double at = y == -r ? x + r : x == r ? 3 * r + y : y == r ? 5 * r - x : 7 * r - y;
+      if (r > 0) at = std::fmod(at + turns * static_cast<double>(r * r) / (half * half) + 8 * r, 8 * r);
+      const int side = r > 0 ? std::min(3, static_cast<int>(at / (2 * r))) : 0;
+      const double along = at - 2 * r * side - r;
+      const std::array<Vec3, 4> places{Vec3(along, -r, 0), Vec3(r, along, 0), Vec3(-along, r, 0), Vec3(-r, -along, 0)};
+      s.mesh.points.push_back(places[side] / half);
+      s.source.push_back({{index(x, y), -1, -1}, {1, 0, 0}});
+    }
+  for (int y = -half; y < half; ++y)
+    for (int x = -half; x < half; ++x) {
+      // Diagonals from the middle outwards: a vertex with one triangle can only be a corner.
+      const std::array<int, 4> c{index(x, y), index(x + 1, y), index(x + 1, y + 1), index(x, y + 1)};
+      const int k = (x < 0) == (y < 0) ? 0 : 1;
+      s.mesh.faces.push_back({c[k], c[k + 1], c[k + 2]});
+      s.mesh.faces.push_back({c[k], c[k + 2], c[(k + 3) % 4]});
+    }
+  for (std::size_t f = 0; f < s.mesh.faces.size(); ++f) s.mesh.source_face.push_back(static_cast<int>(f));
+  connect_half_edges(s.mesh);
+  s.node_count = 4;
+  s.nodes = {{0, 1, 2, 3}};
+  s.neighbours.resize(1);
+  s.patch.assign(s.mesh.faces.size(), 0);
+  s.sides.resize(1);
+  for (int i = -half; i <= half; ++i) {
+    s.sides[0][0].push_back(index(i, -half));
+    s.sides[0][1].push_back(index(half, i));
+    s.sides[0][2].push_back(index(-i, half));
+    s.sides[0][3].push_back(index(-half, -i));
+  }
+  return s;
+}
+
+TEST(GlobalMap, CornersMoveAlongTheBoundaryToWhereItTurns) {
+  for (const int turns : {1, 3, -2}) {
+    PatchedSurface square = wound_square(10, turns);
+    Context context;
+    GlobalMapOptions options;
+    options.vertices_a_quad = 1e6;
+    ChartMesh held(square, map_patches(square, Progress(context))), free = held;
+    options.corners_move = false;
+    EXPECT_GT(smooth_map(held, square, options, Progress(context)).energy, 1.001);
+    options.corners_move = true;
+    EXPECT_NEAR(smooth_map(free, square, options, Progress(context)).energy, 1, 1e-6);
+    expect_bijective(free);
+    int corners = 0;
+    for (std::size_t v = 0; v < free.points.size(); ++v) {
+      if (free.kind[v] != ChartMesh::Kind::Pinned) continue;
+      ++corners;
+      EXPECT_NEAR(std::abs(free.points[v].x()), 1, 1e-12);
+      EXPECT_NEAR(std::abs(free.points[v].y()), 1, 1e-12);
+    }
+    EXPECT_EQ(corners, 4);
   }
 }
 
