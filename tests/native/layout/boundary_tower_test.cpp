@@ -108,6 +108,22 @@ TEST(BoundaryTower, PlacesItsNodesEvenlyFromTheSharpestTurnOn) {
   }
 }
 
+// Long and thin, its nodes anywhere: the polygon that it is mapped to crowds them together, and quads drawn there may fold at first.
+TEST(BoundaryTower, StandsOnStrips) {
+  for (const int length : {16, 23, 30})
+    for (int seed = 0; seed < 6; ++seed)
+      for (const int cubes : {1, 3}) {
+        const TriangleSurface strip = testing::unit(repaired(grid(1, length)));
+        const BoundaryLoop loop = boundary_loops(strip).front();
+        TestRandom random(seed);
+        std::vector<Vec3> nodes;
+        for (int k = 0; k < 4; ++k) nodes.push_back(loop.at(random.unit() * loop.length()));
+        const PatchedSurface base = grow(strip, {nodes, cubes});
+        EXPECT_EQ(base.patch_count(), 4 * cubes + 1);
+        expect_layout(strip, base);
+      }
+}
+
 TEST(BoundaryTower, IsAsHighAsTheSurface) {
   const auto cubes_on = [](double stretch) {
     TriangleSurface surface = repaired(ball(16, 0.5));
