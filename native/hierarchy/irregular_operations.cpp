@@ -16,7 +16,7 @@ namespace {
 
 using Side = Repatch::Side;
 
-constexpr int kMostQuads = 1 << 24;   // of one operation
+constexpr int kMostQuads = 1 << 20;   // of one operation: takes 1.5 GB
 constexpr int kFewestSides = 4;       // of a boundary that a ring of quads can stand on without joining two vertices twice
 
 Side patch_side(int quad, int side) {
