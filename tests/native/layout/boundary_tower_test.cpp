@@ -61,6 +61,16 @@ TEST(BoundaryLoop, KnowsWhereAPlaceLies) {
   EXPECT_TRUE(boundary_loops(repaired(ball(4))).empty());
 }
 
+TEST(BoundaryLoop, OfNoLengthIsAPoint) {
+  const Vec3 place(3, 1, 2);
+  const std::vector<Vec3> points(3, place);
+  const BoundaryLoop loop(points, {0, 1, 2});
+  EXPECT_EQ(loop.length(), 0);
+  for (const double arc : {-1.0, 0.0, 0.5}) EXPECT_EQ(loop.at(arc), place);
+  EXPECT_EQ(loop.nearest(Vec3::Zero()), 0);
+  EXPECT_EQ(loop.turn(1, 0.1), 0);
+}
+
 TEST(BoundaryTower, IsAChainOfCubes) {
   const TriangleSurface surface = open_ball();
   for (const int cubes : {1, 2, 4}) {
