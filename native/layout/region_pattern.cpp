@@ -2,6 +2,7 @@
 #include "layout/region_pattern.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 
 #include "base/error.h"
@@ -113,6 +114,10 @@ LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 
 std::string find_filling_defect(const std::vector<std::array<int, 4>>& quads, int corners) {
   const auto node = [](int n) { return "node " + std::to_string(n); };
   if (quads.empty()) return "are none";
+  const std::int64_t most = corners + 4 * static_cast<std::int64_t>(quads.size());
+  for (const auto& quad : quads)
+    for (const int n : quad)
+      if (n < 0 || n >= most) return "have " + node(n) + ", and there can be none but those from 0 to " + std::to_string(most - 1);
   Sides sides;
   int nodes = corners;
   for (std::size_t q = 0; q < quads.size(); ++q)
