@@ -42,6 +42,8 @@ struct Trial {
 // Looks for layouts with exactly so many quads at the boundary nodes.
 class ExactFilling {
  public:
+  explicit ExactFilling(const Progress& progress) : progress_(progress) {}
+
   Trial operator()(const std::vector<int>& quads_at) {
     const auto known = known_.find(quads_at);
     if (known != known_.end()) return known->second;
@@ -53,8 +55,8 @@ class ExactFilling {
   }
 
  private:
-  static std::optional<DiskFilling> fill_inside(const DiskFront& front, int widenings) {
-    std::optional<DiskFilling> best = fill_interior(front);
+  std::optional<DiskFilling> fill_inside(const DiskFront& front, int widenings) const {
+    std::optional<DiskFilling> best = fill_interior(front, progress_);
     if (best || widenings == 0 || front.length() > kSmallFront) return best;
     // One more quad at a node makes the next ring larger.
     for (int v : front.loop()) {
@@ -68,7 +70,8 @@ class ExactFilling {
     return best;
   }
 
-  static Trial lay_rings(const std::vector<int>& quads_at) {
+  Trial lay_rings(const std::vector<int>& quads_at) const {
+    progress_.check();
     Trial trial;
     const DiskFront boundary(quads_at);
     const int n = boundary.length();
@@ -157,6 +160,7 @@ class ExactFilling {
     return result;
   }
 
+  const Progress& progress_;
   int budget_ = kMostTrials;
   std::map<std::vector<int>, Trial> known_;
 };
@@ -183,7 +187,7 @@ int difference(const std::vector<int>& a, const std::vector<int>& b) {
 
 // Changes wishes one by one until they can be kept: a beam search, in which those come first that went farthest, and those with more quads before those with fewer. A rectangle
 // ends it at the latest.
-DiskLayout fill_near(const std::vector<int>& wishes) {
+DiskLayout fill_near(const std::vector<int>& wishes, const Progress& progress) {
   struct Candidate {
     std::tuple<int, int, int> rank;  // least first
     std::vector<int> quads_at;
@@ -193,7 +197,7 @@ DiskLayout fill_near(const std::vector<int>& wishes) {
   const int most = difference(wishes, rectangle);
   std::set<std::vector<int>> seen{wishes};
   std::vector<Candidate> generation{{{}, wishes}};
-  ExactFilling fill_exactly;
+  ExactFilling fill_exactly(progress);
   for (int changes = 0; changes <= most; ++changes) {
     std::optional<DiskFilling> best;
     std::vector<Candidate> next;
@@ -224,7 +228,7 @@ DiskLayout fill_near(const std::vector<int>& wishes) {
 
 }  // namespace
 
-DiskLayout fill_disk(const std::vector<int>& quads_at) {
+DiskLayout fill_disk(const std::vector<int>& quads_at, const Progress& progress) {
   const int n = static_cast<int>(quads_at.size());
   if (n % 2) throw Error(ErrorCode::InvalidInput, "a boundary of " + std::to_string(n) + " edges: only an even number can be filled with quads");
   if (n < 4) throw Error(ErrorCode::InvalidInput, "a boundary of " + std::to_string(n) + " edges: two nodes would be joined twice; at least four are needed");
@@ -240,15 +244,15 @@ DiskLayout fill_disk(const std::vector<int>& quads_at) {
       break;
     }
   std::rotate(wishes.begin(), wishes.begin() + turn, wishes.end());
-  DiskLayout layout = fill_near(wishes);
+  DiskLayout layout = fill_near(wishes, progress);
   for (auto& quad : layout.quads)
     for (int& c : quad)
       if (c < n) c = (c + turn) % n;
   return layout;
 }
 
-DiskLayout fill_disk_with_ring(int edges) {
-  const DiskLayout inside = fill_disk(std::vector<int>(std::max(0, edges), 2));
+DiskLayout fill_disk_with_ring(int edges, const Progress& progress) {
+  const DiskLayout inside = fill_disk(std::vector<int>(std::max(0, edges), 2), progress);
   DiskLayout layout;
   layout.inner_nodes = edges + inside.inner_nodes;
   for (int k = 0; k < edges; ++k) layout.quads.push_back({k, (k + 1) % edges, edges + (k + 1) % edges, edges + k});

@@ -21,7 +21,7 @@ constexpr int kMostChoices = 300;  // of irregular nodes on a front that are all
 
 class Interior {
  public:
-  explicit Interior(const DiskFront& front) : front_(front), nodes_(front.loop()) {
+  Interior(const DiskFront& front, const Progress& progress) : front_(front), progress_(progress), nodes_(front.loop()) {
     for (int v : nodes_) {
       lacking_.push_back(front.lacking(v));
       turns_ += 2 - front.lacking(v);
@@ -76,6 +76,7 @@ class Interior {
   bool may(int i, int by) const { return front_.may_deviate(nodes_[i], by); }
 
   void attempt(const std::vector<int>& more) {
+    progress_.check();
     if (!tried_.insert(more).second) return;
     if (!is_plausible(more)) return;
     DiskFront front = front_;
@@ -174,6 +175,7 @@ class Interior {
   }
 
   const DiskFront& front_;
+  const Progress& progress_;
   std::vector<int> nodes_, lacking_;
   int turns_ = 0;
   int least_ = 0;  // irregular nodes that cannot be done without
@@ -201,6 +203,6 @@ bool better(const DiskFilling& a, const std::optional<DiskFilling>& b) {
   return !b || a.irregular < b->irregular || (a.irregular == b->irregular && a.quads() < b->quads());
 }
 
-std::optional<DiskFilling> fill_interior(const DiskFront& front) { return Interior(front).fill(); }
+std::optional<DiskFilling> fill_interior(const DiskFront& front, const Progress& progress) { return Interior(front, progress).fill(); }
 
 }  // namespace hybrid_mesh

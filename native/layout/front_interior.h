@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "base/context.h"
 #include "layout/disk_front.h"
 #include "layout/disk_layout.h"
 
@@ -20,6 +21,6 @@ bool better(const DiskFilling& a, const std::optional<DiskFilling>& b);
 bool is_disk_mesh(const DiskLayout& layout, int boundary_nodes);
 
 // Fills the disk inside a front of inner nodes. Some of them take one quad more or less than four, so that the front turns by 3, 4 or 5 right angles. Nothing if no way is found.
-std::optional<DiskFilling> fill_interior(const DiskFront& front);
+std::optional<DiskFilling> fill_interior(const DiskFront& front, const Progress& progress);
 
 }  // namespace hybrid_mesh

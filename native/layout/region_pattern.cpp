@@ -85,7 +85,7 @@ std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, cons
   return joined;
 }
 
-LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region) {
+LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region, const Progress& progress) {
   const auto edit_of = [&](DiskLayout filling) {
     LayoutEdit edit;
     edit.patches = region.patches;
@@ -94,9 +94,9 @@ LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& regi
     edit.inner_nodes = filling.inner_nodes;
     return edit;
   };
-  LayoutEdit edit = edit_of(fill_disk(regular_quads(surface, region)));
+  LayoutEdit edit = edit_of(fill_disk(regular_quads(surface, region), progress));
   if (find_edit_defect(surface, region, edit).empty()) return edit;
-  LayoutEdit ringed = edit_of(fill_disk_with_ring(static_cast<int>(region.corners.size())));
+  LayoutEdit ringed = edit_of(fill_disk_with_ring(static_cast<int>(region.corners.size()), progress));
   return find_edit_defect(surface, region, ringed).empty() ? ringed : edit;
 }
 

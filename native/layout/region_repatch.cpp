@@ -66,7 +66,7 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
   const int corners = static_cast<int>(region.corners.size());
   const FaceFillingOptions filling{regular_quads(surface, region), joined_outside(surface, region)};
   DrawnEdit out;
-  out.piece = fill_faces(drawn, filling);
+  out.piece = fill_faces(drawn, filling, progress);
   if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
   out.edit.patches = region.patches;
   out.edit.start = region.boundary[0];
@@ -76,10 +76,10 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
 }
 
 // New quads that need no curves.
-LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, const RegionPattern& pattern) {
+LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, const RegionPattern& pattern, const Progress& progress) {
   LayoutEdit edit;
   if (pattern.kind == RegionPattern::Kind::Automatic) {
-    edit = automatic_edit(surface, region);
+    edit = automatic_edit(surface, region, progress);
   } else if (pattern.kind == RegionPattern::Kind::Template) {
     edit = template_edit(region, pattern.quads);
   } else {
@@ -131,7 +131,7 @@ LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const R
     made = edit.edit;
     change = apply_edit(mapped, std::move(edit));
   } else {
-    made = find_edit(mapped.surface, *region, repatch.pattern);
+    made = find_edit(mapped.surface, *region, repatch.pattern, progress);
     change = apply_edit(mapped, made);
   }
   map_patches(mapped.surface, change.added, mapped.corners, progress.part(0.4, 0.5));

@@ -548,7 +548,8 @@ class Sequence {
       std::vector<int> wishes = regular_quads(region);
       if (kind == 4)
         for (int& q : wishes) q = 1 + below(3);
-      return fill_disk(wishes).quads;
+      Context context;
+      return fill_disk(wishes, Progress(context)).quads;
     }
     if (kind == 0 && n >= 6) {
       for (int k = 0; k < n; k += 2) quads.push_back({k, k + 1, (k + 2) % n, n});

@@ -17,7 +17,8 @@ using Quads = std::vector<std::array<int, 4>>;
 Quads random_filling(TestRandom& random, int corners) {
   std::vector<int> wishes;
   for (int k = 0; k < corners; ++k) wishes.push_back(1 + random.below(3));
-  return fill_disk(wishes).quads;
+  Context context;
+  return fill_disk(wishes, Progress(context)).quads;
 }
 
 TEST(FillingDefect, IsNoneInAFilledDisk) {
