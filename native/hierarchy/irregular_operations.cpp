@@ -133,12 +133,6 @@ DiskRegion find_disk_region(const HybridMesh& mesh, const std::vector<int>& node
   return region;
 }
 
-std::vector<int> regular_quads(const DiskRegion& region) {
-  std::vector<int> result;
-  for (std::size_t k = 0; k < region.corners.size(); ++k) result.push_back(std::max(1, (region.on_mesh_boundary[k] ? 2 : 4) - region.outside[k]));
-  return result;
-}
-
 OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, int count) {
   const DiskRegion region = find_disk_region(mesh, nodes);
   if (!region.reason.empty()) return {{}, region.reason};

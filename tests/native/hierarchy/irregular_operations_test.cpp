@@ -17,6 +17,13 @@
 namespace hybrid_mesh {
 namespace {
 
+// For each corner of a region the number of quads inside that makes it regular: four around it with those outside, two on the mesh's boundary; at least one.
+std::vector<int> regular_quads(const DiskRegion& region) {
+  std::vector<int> result;
+  for (std::size_t k = 0; k < region.corners.size(); ++k) result.push_back(std::max(1, (region.on_mesh_boundary[k] ? 2 : 4) - region.outside[k]));
+  return result;
+}
+
 testing::AssertionResult sound(const HybridMesh& mesh) {
   const auto defects = find_defects(mesh);
   if (!defects.empty()) return testing::AssertionFailure() << defects.size() << " defects, first: " << defects[0];
