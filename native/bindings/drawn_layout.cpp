@@ -62,7 +62,15 @@ py::array_t<double> positions(const PatchLayout& layout, const std::vector<int>&
   return rows_to_array<double>(out);
 }
 
-py::dict to_dict(const DrawnLayout& drawn) {
+// A layout and what its faces are filled with.
+struct FilledLayout {
+  DrawnLayout drawn;
+  std::vector<int> quads;  // per face, 0 where it cannot be filled
+  std::string plan;        // as the base domain of a plan: JSON text; empty if that was not asked for, or there are problems
+};
+
+py::dict to_dict(const FilledLayout& filled) {
+  const DrawnLayout& drawn = filled.drawn;
   const PatchLayout& layout = drawn.layout;
   py::list curves, faces, quads;
   for (const PatchLayout::Curve& c : layout.curves) {
@@ -83,7 +91,7 @@ py::dict to_dict(const DrawnLayout& drawn) {
   py::dict result;
   result["nodes"] = positions(layout, layout.nodes);
   result["curves"] = curves;
-  for (const DiskLayout& filling : find_fillings(layout)) quads.append(filling.quads.size());
+  for (const int count : filled.quads) quads.append(count);
   result["faces"] = faces;
   result["quads"] = quads;
   result["problems"] = to_list(drawn.problems);
@@ -104,11 +112,14 @@ Drawing drawing_from_python(const py::object& points, const py::object& faces, c
   return drawing;
 }
 
-DrawnLayout make_layout(const Drawing& drawing, Context& context) {
+FilledLayout make_layout(const Drawing& drawing, Context& context) {
   RepairReport report;
   const Progress progress(context);
   progress.stage("layout");
-  return make_layout(repair(drawing.soup, RepairOptions(), report, progress.part(0, 0.2)), drawing.strokes, drawing.options, progress.part(0.2, 1));
+  FilledLayout filled;
+  filled.drawn = make_layout(repair(drawing.soup, RepairOptions(), report, progress.part(0, 0.2)), drawing.strokes, drawing.options, progress.part(0.2, 1));
+  for (const DiskLayout& filling : find_fillings(filled.drawn.layout, {}, progress)) filled.quads.push_back(static_cast<int>(filling.quads.size()));
+  return filled;
 }
 
 py::dict make_layout_from_arrays(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
@@ -116,37 +127,31 @@ py::dict make_layout_from_arrays(const py::object& points, const py::object& fac
   return to_dict(run_interruptibly([&](Context& context) { return make_layout(drawing, context); }));
 }
 
-// A layout with its faces filled as the base domain of a plan: JSON text, empty if there are problems.
-struct PlannedLayout {
-  DrawnLayout drawn;
-  std::string plan;
-};
-
-PlannedLayout plan_layout(const Drawing& drawing, Context& context) {
-  PlannedLayout planned{make_layout(drawing, context), {}};
+FilledLayout plan_layout(const Drawing& drawing, Context& context) {
+  FilledLayout planned = make_layout(drawing, context);
   Plan plan;
-  const PatchedSurface quads = fill_faces(planned.drawn);
+  const PatchedSurface quads = fill_faces(planned.drawn, {}, Progress(context));
   if (!planned.drawn.problems.empty()) return planned;
   plan.base = outline_of(quads);
   planned.plan = to_json(plan);
   return planned;
 }
 
-py::dict to_dict(const PlannedLayout& planned) {
-  py::dict result = to_dict(planned.drawn);
+py::dict to_dict_with_plan(const FilledLayout& planned) {
+  py::dict result = to_dict(planned);
   result["plan"] = planned.plan;
   return result;
 }
 
 py::dict layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
   const Drawing drawing = drawing_from_python(points, faces, strokes, snap);
-  return to_dict(run_interruptibly([&](Context& context) { return plan_layout(drawing, context); }));
+  return to_dict_with_plan(run_interruptibly([&](Context& context) { return plan_layout(drawing, context); }));
 }
 
 std::shared_ptr<PythonJob> start_layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
-  auto planned = std::make_shared<PlannedLayout>();  // written by the job's thread until it is done
+  auto planned = std::make_shared<FilledLayout>();  // written by the job's thread until it is done
   return start_job([drawing = drawing_from_python(points, faces, strokes, snap), planned](Context& context) { *planned = plan_layout(drawing, context); },
-                   [planned]() -> py::object { return to_dict(*planned); });
+                   [planned]() -> py::object { return to_dict_with_plan(*planned); });
 }
 
 }  // namespace

@@ -119,15 +119,15 @@ std::vector<std::string> level_names(const PythonHierarchy& hierarchy) {
 
 py::dict level(const PythonHierarchy& hierarchy, const std::string& name) {
   return to_dict(without_gil([&] {
-    return hierarchy.annotated(hierarchy.locked([&](const HybridMesh& mesh) {
+    return hierarchy.annotated([&](const HybridMesh& mesh) {
       const Level level = find_level(mesh, name);
       return mesh.level_mesh(level.number, level.kind);
-    }));
+    });
   }));
 }
 
 py::dict final_mesh(const PythonHierarchy& hierarchy) {
-  return to_dict(without_gil([&] { return hierarchy.annotated(hierarchy.locked([](const HybridMesh& mesh) { return mesh.final_mesh(); })); }));
+  return to_dict(without_gil([&] { return hierarchy.annotated([](const HybridMesh& mesh) { return mesh.final_mesh(); }); }));
 }
 
 std::string address_of(const HybridMesh& mesh, const std::vector<int>& root_number, int node) {

@@ -23,7 +23,7 @@ class PythonHierarchy {
     shared_->plan_root = std::move(plan_root);
   }
 
-  const std::vector<int>& plan_root() const { return shared_->plan_root; }
+  const std::vector<int>& plan_root() const { return shared_->plan_root; }  // to be read inside locked() alone
   const std::string& metadata() const { return metadata_; }  // JSON text kept in the file
 
   // Calls function(const HybridMesh&), one caller at a time: sampling remembers where it was, and Python's other threads may go on.
@@ -48,10 +48,12 @@ class PythonHierarchy {
     shared_->sources.reset();
   }
 
-  AnnotatedMesh annotated(QuadMesh mesh) const {
+  // The mesh that make(const HybridMesh&) takes out of the hierarchy, with what Blender shows of it: no other thread changes the hierarchy in between.
+  template <typename Make>
+  AnnotatedMesh annotated(Make&& make) const {
     const std::lock_guard lock(shared_->mutex);
     if (!shared_->sources) shared_->sources.emplace(*shared_->mesh);
-    return annotate(*shared_->mesh, *shared_->sources, shared_->plan_root, std::move(mesh));
+    return annotate(*shared_->mesh, *shared_->sources, shared_->plan_root, make(*shared_->mesh));
   }
 
  private:

@@ -129,7 +129,7 @@ PythonResult remesh_and_wait(const py::object& points, const py::object& offsets
 }
 
 py::dict final_mesh(const PythonResult& result) {
-  return to_dict(without_gil([&] { return result.hierarchy.annotated(result.hierarchy.locked([](const HybridMesh& mesh) { return mesh.final_mesh(); })); }));
+  return to_dict(without_gil([&] { return result.hierarchy.annotated([](const HybridMesh& mesh) { return mesh.final_mesh(); }); }));
 }
 
 void save(const PythonResult& result, const py::object& path_object, const std::string& metadata) {

@@ -16,7 +16,7 @@ namespace {
 
 using Side = Repatch::Side;
 
-constexpr int kMostQuads = 1 << 24;   // of one operation
+constexpr int kMostQuads = 1 << 20;   // of one operation: takes 1.5 GB
 constexpr int kFewestSides = 4;       // of a boundary that a ring of quads can stand on without joining two vertices twice
 
 Side patch_side(int quad, int side) {
@@ -131,12 +131,6 @@ DiskRegion find_disk_region(const HybridMesh& mesh, const std::vector<int>& node
   if (static_cast<int>(vertices.size()) - edges + static_cast<int>(nodes.size()) != 1) return refuse("the quads form no disk");
   look_outside(mesh, region);
   return region;
-}
-
-std::vector<int> regular_quads(const DiskRegion& region) {
-  std::vector<int> result;
-  for (std::size_t k = 0; k < region.corners.size(); ++k) result.push_back(std::max(1, (region.on_mesh_boundary[k] ? 2 : 4) - region.outside[k]));
-  return result;
 }
 
 OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, int count) {

@@ -26,9 +26,6 @@ struct DiskRegion {
 // The disk made of some nodes, its boundary beginning with the half-edge `start` (-1: the first boundary side of the first node that has one).
 DiskRegion find_disk_region(const HybridMesh& mesh, const std::vector<int>& nodes, HalfEdge start = -1);
 
-// For each corner of a region the number of quads inside that makes it regular: four around it with those outside, two on the mesh's boundary; at least one.
-std::vector<int> regular_quads(const DiskRegion& region);
-
 // Where a new vertex of an operation belongs, whatever the positions of the others: at a weighted mean of vertices, raised along the normal of the removed quads.
 struct VertexPlace {
   std::vector<std::pair<VertexId, double>> mean;  // weights, 1 together

@@ -19,6 +19,7 @@ double BoundaryLoop::distance(int i, int j) const {
 }
 
 Vec3 BoundaryLoop::at(double arc) const {
+  if (!(length() > 0)) return point(0);
   while (arc < 0) arc += length();
   while (arc >= length()) arc -= length();
   const int i = std::max(0, static_cast<int>(std::upper_bound(at_.begin(), at_.end(), arc) - at_.begin()) - 1);

@@ -39,7 +39,7 @@ struct Polygon {
 
 class FaceFiller {
  public:
-  FaceFiller(const PatchLayout& layout, const FaceFillingOptions& options) : layout_(layout), joined_(options.joined) {
+  FaceFiller(const PatchLayout& layout, const FaceFillingOptions& options, const Progress& progress) : layout_(layout), progress_(progress), joined_(options.joined) {
     const int nodes = static_cast<int>(layout.nodes.size());
     least_.assign(nodes, 3);
     most_.assign(nodes, 6);
@@ -162,10 +162,10 @@ class FaceFiller {
   void fill(Polygon& p) {
     if (!p.filling.quads.empty())
       for (const auto& chord : chords(p)) joined_.erase(chord);
-    p.filling = fill_disk(p.wishes);
+    p.filling = fill_disk(p.wishes, progress_);
     std::vector<std::pair<int, int>> across = chords(p);
     if (std::any_of(across.begin(), across.end(), [&](const auto& chord) { return joined_.count(chord) > 0; })) {
-      p.filling = fill_disk_with_ring(p.size());
+      p.filling = fill_disk_with_ring(p.size(), progress_);
       across.clear();
     }
     joined_.insert(across.begin(), across.end());
@@ -246,6 +246,7 @@ class FaceFiller {
   }
 
   const PatchLayout& layout_;
+  const Progress& progress_;
   std::set<std::pair<int, int>> joined_;
   std::vector<int> least_, most_;  // quads at each node
   std::vector<int> fixed_;         // quads at each node in faces that are not filled
@@ -346,13 +347,15 @@ class FaceCutter {
 
 }  // namespace
 
-std::vector<DiskLayout> find_fillings(const PatchLayout& layout, const FaceFillingOptions& options) { return FaceFiller(layout, options).run(); }
+std::vector<DiskLayout> find_fillings(const PatchLayout& layout, const FaceFillingOptions& options, const Progress& progress) {
+  return FaceFiller(layout, options, progress).run();
+}
 
-PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options) {
+PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options, const Progress& progress) {
   if (!drawn.problems.empty()) return {};
   const PatchLayout& layout = drawn.layout;
   if (layout.is_quads()) return to_patched_surface(layout);
-  const std::vector<DiskLayout> fillings = find_fillings(layout, options);
+  const std::vector<DiskLayout> fillings = find_fillings(layout, options, progress);
   FaceCutter cutter(layout);
   for (int f = 0; f < static_cast<int>(layout.faces.size()); ++f) {
     try {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/context.h"
 #include "layout/disk_layout.h"
 #include "layout/drawn_layout.h"
 
@@ -18,10 +19,10 @@ struct FaceFillingOptions {
 
 // Quads for the faces of a layout, nodes 0, 1, ... being those at the starts of a face's sides: one for a face of four sides; by fill_disk() and the face's angles at its nodes for a disk
 // with a larger even number of sides; none for other faces.
-std::vector<DiskLayout> find_fillings(const PatchLayout& layout, const FaceFillingOptions& options = {});
+std::vector<DiskLayout> find_fillings(const PatchLayout& layout, const FaceFillingOptions& options, const Progress& progress);
 
 // Cuts the faces of a layout without problems along the sides of quads that fill them. The layout's nodes keep their numbers, and faces of four sides their order among the patches.
 // Where there is no map of a face to draw them in, that is a problem of `drawn`, and nothing is returned; nor is for a layout that has problems.
-PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options = {});
+PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

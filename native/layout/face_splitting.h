@@ -55,7 +55,7 @@ void split_piece(std::vector<PieceCorner> polygon, const Emit& emit) {
   emit(polygon[0], polygon[1], polygon[2], polygon[0].mark, polygon[1].mark, polygon[2].mark);
 }
 
-// The same for a whole triangle with the points on its sides, along chords that do not cross each other.
+// The same for a whole triangle with the points on its sides, along chords. Throws Error{Internal} if they cross each other.
 template <class Emit>
 void split_along_chords(std::vector<PieceCorner> polygon, const std::vector<FaceChord>& chords, const Emit& emit) {
   // Cut off the shortest arc first: what lies below it holds no other chord.
@@ -66,6 +66,7 @@ void split_along_chords(std::vector<PieceCorner> polygon, const std::vector<Face
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<int>(i);
   for (const int i : order) {
     const auto low = std::find(left.begin(), left.end(), chords[i].low), high = std::find(left.begin(), left.end(), chords[i].high);
+    if (low == left.end() || high == left.end()) throw Error(ErrorCode::Internal, "two curves cross in a triangle");
     std::vector<PieceCorner> piece;
     for (auto it = low; it != high + 1; ++it) piece.push_back(polygon[*it]);
     if (piece.size() < 3) throw Error(ErrorCode::Internal, "a curve runs along a side of a triangle");

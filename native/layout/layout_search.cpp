@@ -14,6 +14,7 @@
 #include <set>
 #include <utility>
 
+#include "layout/region_pattern.h"
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 
@@ -36,21 +37,11 @@ void require_fit(const PatchedSurface& s, const LayoutEdit& edit) {
   if (patches.count(s.neighbours[edit.start.patch][edit.start.side].patch)) fails();
   const std::optional<PatchRegion> region = make_region(s, edit.patches, edit.start);
   if (!region) fails();
-  const std::int64_t corners = static_cast<std::int64_t>(region->corners.size()), nodes = corners + edit.inner_nodes;
-  if (edit.rings < 0 || corners * edit.rings > edit.inner_nodes) fails();
-  std::set<int> used;
-  std::set<std::pair<int, int>> sides;
-  for (const auto& quad : edit.quads)
-    for (int i = 0; i < 4; ++i) {
-      const int a = quad[i], b = quad[(i + 1) % 4];
-      if (a < 0 || a >= nodes || a == b || !sides.insert({a, b}).second) fails();
-      used.insert(a);
-    }
-  if (static_cast<std::int64_t>(used.size()) != nodes) fails();
-  for (int k = 0; k < corners; ++k)
-    if (!sides.count({k, static_cast<int>((k + 1) % corners)})) fails();
-  for (const auto& [a, b] : sides)
-    if ((a < corners && b == (a + 1) % corners) == (sides.count({b, a}) > 0)) fails();
+  const int corners = static_cast<int>(region->corners.size());
+  if (!find_filling_defect(edit.quads, corners).empty()) fails();
+  int nodes = corners;
+  for (const auto& quad : edit.quads) nodes = std::max(nodes, *std::max_element(quad.begin(), quad.end()) + 1);
+  if (nodes - corners != edit.inner_nodes || edit.rings < 0 || static_cast<std::int64_t>(corners) * edit.rings > edit.inner_nodes) fails();
 }
 
 class LayoutSearch {

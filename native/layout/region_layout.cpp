@@ -31,8 +31,34 @@ std::vector<char> boundary_nodes(const PatchedSurface& surface) {
   return on;
 }
 
+namespace {
+
+// Whether sides join all of some patches, given in order.
+bool are_joined(const PatchedSurface& surface, const std::vector<int>& patches) {
+  std::vector<char> reached(patches.size(), 0);
+  std::vector<int> stack{patches.front()};
+  std::size_t count = reached[0] = 1;
+  while (!stack.empty()) {
+    const int q = stack.back();
+    stack.pop_back();
+    for (const PatchSide& s : surface.neighbours[q]) {
+      const auto at = std::lower_bound(patches.begin(), patches.end(), s.patch);
+      if (at == patches.end() || *at != s.patch || reached[at - patches.begin()]) continue;
+      reached[at - patches.begin()] = 1;
+      stack.push_back(s.patch);
+      ++count;
+    }
+  }
+  return count == patches.size();
+}
+
+}  // namespace
+
 std::optional<PatchRegion> make_region(const PatchedSurface& surface, const std::vector<int>& patches, PatchSide start) {
-  const auto inside = [&](int q) { return q >= 0 && std::find(patches.begin(), patches.end(), q) != patches.end(); };
+  std::vector<int> sorted = patches;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return std::nullopt;
+  const auto inside = [&](int q) { return std::binary_search(sorted.begin(), sorted.end(), q); };
   const auto on_rim = [&](const PatchSide& s) { return !inside(surface.neighbours[s.patch][s.side].patch); };
   int rim = 0;
   for (const int q : patches)
@@ -42,6 +68,8 @@ std::optional<PatchRegion> make_region(const PatchedSurface& surface, const std:
       if (start.patch < 0) start = {q, i};
     }
   if (rim == 0 || !inside(start.patch) || !on_rim(start)) return std::nullopt;
+  // A torus beside the disk changes neither the rim nor the count below.
+  if (!are_joined(surface, sorted)) return std::nullopt;
   PatchRegion region;
   region.patches = patches;
   PatchSide at = start;

@@ -2,6 +2,7 @@
 #include "layout/region_pattern.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 
 #include "base/error.h"
@@ -84,7 +85,7 @@ std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, cons
   return joined;
 }
 
-LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region) {
+LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region, const Progress& progress) {
   const auto edit_of = [&](DiskLayout filling) {
     LayoutEdit edit;
     edit.patches = region.patches;
@@ -93,9 +94,9 @@ LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& regi
     edit.inner_nodes = filling.inner_nodes;
     return edit;
   };
-  LayoutEdit edit = edit_of(fill_disk(regular_quads(surface, region)));
+  LayoutEdit edit = edit_of(fill_disk(regular_quads(surface, region), progress));
   if (find_edit_defect(surface, region, edit).empty()) return edit;
-  LayoutEdit ringed = edit_of(fill_disk_with_ring(static_cast<int>(region.corners.size())));
+  LayoutEdit ringed = edit_of(fill_disk_with_ring(static_cast<int>(region.corners.size()), progress));
   return find_edit_defect(surface, region, ringed).empty() ? ringed : edit;
 }
 
@@ -113,6 +114,10 @@ LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 
 std::string find_filling_defect(const std::vector<std::array<int, 4>>& quads, int corners) {
   const auto node = [](int n) { return "node " + std::to_string(n); };
   if (quads.empty()) return "are none";
+  const std::int64_t most = corners + 4 * static_cast<std::int64_t>(quads.size());
+  for (const auto& quad : quads)
+    for (const int n : quad)
+      if (n < 0 || n >= most) return "have " + node(n) + ", and there can be none but those from 0 to " + std::to_string(most - 1);
   Sides sides;
   int nodes = corners;
   for (std::size_t q = 0; q < quads.size(); ++q)

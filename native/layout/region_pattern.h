@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/context.h"
 #include "layout/region_layout.h"
 
 namespace hybrid_mesh {
@@ -19,7 +20,7 @@ std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, cons
 
 // Quads that fill the region, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where they cannot. Throws Error{InvalidInput} for an
 // odd number of boundary sides.
-LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region);
+LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region, const Progress& progress);
 
 // Given quads for the region, numbered as in LayoutEdit. Throws Error{InvalidInput} if they do not fill it.
 LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 4>> quads);

@@ -62,37 +62,24 @@ DrawnEdit draw(const PatchedSurface& surface, const PatchRegion& region, std::ve
   // Curves are drawn on a level, which is the farther from the surface the coarser it is.
   options.reach = kReach;
   DrawnLayout drawn = make_layout(disk, strokes, options, progress);
-  const std::vector<Vec3>& points = drawn.layout.mesh.points;
+  // The corners are the layout's first nodes, in their order: nodes have the numbers that an edit gives them.
   const int corners = static_cast<int>(region.corners.size());
-  std::vector<int> number;  // per node of the layout; new ones from `corners` on
-  FaceFillingOptions filling;
-  const std::vector<int> wanted = regular_quads(surface, region);
-  int inner_nodes = 0;
-  for (const int v : drawn.layout.nodes) {
-    const auto at = std::find(corner.begin(), corner.end(), points[v]);
-    number.push_back(at == corner.end() ? corners + inner_nodes++ : static_cast<int>(at - corner.begin()));
-    filling.quads_at.push_back(at == corner.end() ? 0 : wanted[at - corner.begin()]);
-  }
-  std::vector<int> node_at(corners, -1);
-  for (std::size_t n = 0; n < number.size(); ++n)
-    if (number[n] < corners) node_at[number[n]] = static_cast<int>(n);
-  for (const auto& [a, b] : joined_outside(surface, region)) filling.joined.insert({node_at[a], node_at[b]});
+  const FaceFillingOptions filling{regular_quads(surface, region), joined_outside(surface, region)};
   DrawnEdit out;
-  out.piece = fill_faces(drawn, filling);
+  out.piece = fill_faces(drawn, filling, progress);
   if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
-  for (int n = static_cast<int>(number.size()); n < out.piece.node_count; ++n) number.push_back(corners + inner_nodes++);
   out.edit.patches = region.patches;
   out.edit.start = region.boundary[0];
-  out.edit.inner_nodes = inner_nodes;
-  for (const std::array<int, 4>& nodes : out.piece.nodes) out.edit.quads.push_back({number[nodes[0]], number[nodes[1]], number[nodes[2]], number[nodes[3]]});
+  out.edit.inner_nodes = out.piece.node_count - corners;
+  out.edit.quads = out.piece.nodes;
   return out;
 }
 
 // New quads that need no curves.
-LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, const RegionPattern& pattern) {
+LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, const RegionPattern& pattern, const Progress& progress) {
   LayoutEdit edit;
   if (pattern.kind == RegionPattern::Kind::Automatic) {
-    edit = automatic_edit(surface, region);
+    edit = automatic_edit(surface, region, progress);
   } else if (pattern.kind == RegionPattern::Kind::Template) {
     edit = template_edit(region, pattern.quads);
   } else {
@@ -144,7 +131,7 @@ LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const R
     made = edit.edit;
     change = apply_edit(mapped, std::move(edit));
   } else {
-    made = find_edit(mapped.surface, *region, repatch.pattern);
+    made = find_edit(mapped.surface, *region, repatch.pattern, progress);
     change = apply_edit(mapped, made);
   }
   map_patches(mapped.surface, change.added, mapped.corners, progress.part(0.4, 0.5));

@@ -159,6 +159,8 @@ bool is_uniform(const HybridMesh& hierarchy) {
 }  // namespace
 
 HybridMesh make_base(const std::vector<Vec3>& points, const std::vector<std::array<int, 4>>& quads) {
+  for (std::size_t q = 0; q < quads.size(); ++q)
+    if (std::set<int>(quads[q].begin(), quads[q].end()).size() < 4) refuse("quad " + std::to_string(q) + " has the same point twice");
   HybridMesh hierarchy = HybridMesh::from_base(static_cast<int>(points.size()), quads);
   PlacedVertices placed;
   for (std::size_t v = 0; v < points.size(); ++v) placed.add(VertexId(VertexId::Kind::Free, static_cast<int>(v)), points[v]);

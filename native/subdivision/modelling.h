@@ -13,7 +13,7 @@ namespace hybrid_mesh {
 // Hierarchies made by hand, step by step. A step leaves nodes and vertices with the numbers that they had and positions where they were. What it adds is placed on the level
 // where it comes up, and on every finer one by Catmull-Clark subdivision of the level before.
 
-// A hierarchy of one level, N0. Throws Error{InvalidInput} if the quads are no 2-manifold whose points all have quads.
+// A hierarchy of one level, N0. Throws Error{InvalidInput} if the quads are no 2-manifold whose points all have quads, or one has a point twice.
 HybridMesh make_base(const std::vector<Vec3>& points, const std::vector<std::array<int, 4>>& quads);
 
 // Quads refined until all have at least this level. Throws Error{InvalidInput} for a level out of range; Error{Unsupported} if there would be more than max_subdivided_quads.

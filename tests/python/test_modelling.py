@@ -111,6 +111,8 @@ def test_a_base_is_what_was_given():
         ([[0, 1, 3, 2], [0, 1, 3, 2]], "same direction"),
         (np.zeros((0, 4), int), "no faces"),
         ([[0.5, 1, 3, 2]], "whole numbers"),
+        ([[0, 1, 2, 1], [0, 3, 2, 3]], "quad 0 has the same point twice"),
+        ([[0, 1, 3, 2], [1, 1, 0, 3]], "quad 1 has the same point twice"),
     ],
 )
 def test_what_is_no_base_is_refused(quads, said):
@@ -236,6 +238,7 @@ REFUSED = [
     (lambda h: h.add_cubes(list(nearest(h, 1, [1, 1, 0])) * 2), "twice"),
     (lambda h: h.add_cubes(nearest(h, 1, [1.25, 1.25, 0]), 0), "at least one ring"),
     (lambda h: h.add_cubes(nearest(h, 1, [1.25, 1.25, 0]), 10**9), "more rings"),
+    (lambda h: h.add_cubes(nearest(h, 1, [1.25, 1.25, 0]), 10**6), "more rings"),
     (lambda h: h.add_cubes([nearest(h, 1, [0.75, 0.75, 0])[0], nearest(h, 1, [2.25, 2.25, 0])[0]]), "not all joined"),
     (lambda h: h.add_cubes([nearest(h, 1, [0.75, 0.75, 0])[0], nearest(h, 2, [2.25, 2.25, 0])[0]]), "several levels"),
     (lambda h: h.open_boundary(nearest(h, 1, [1, 1, 0], 36)), "nothing would be left"),

@@ -17,6 +17,13 @@
 namespace hybrid_mesh {
 namespace {
 
+// For each corner of a region the number of quads inside that makes it regular: four around it with those outside, two on the mesh's boundary; at least one.
+std::vector<int> regular_quads(const DiskRegion& region) {
+  std::vector<int> result;
+  for (std::size_t k = 0; k < region.corners.size(); ++k) result.push_back(std::max(1, (region.on_mesh_boundary[k] ? 2 : 4) - region.outside[k]));
+  return result;
+}
+
 testing::AssertionResult sound(const HybridMesh& mesh) {
   const auto defects = find_defects(mesh);
   if (!defects.empty()) return testing::AssertionFailure() << defects.size() << " defects, first: " << defects[0];
@@ -548,7 +555,8 @@ class Sequence {
       std::vector<int> wishes = regular_quads(region);
       if (kind == 4)
         for (int& q : wishes) q = 1 + below(3);
-      return fill_disk(wishes).quads;
+      Context context;
+      return fill_disk(wishes, Progress(context)).quads;
     }
     if (kind == 0 && n >= 6) {
       for (int k = 0; k < n; k += 2) quads.push_back({k, k + 1, (k + 2) % n, n});

@@ -61,6 +61,16 @@ TEST(BoundaryLoop, KnowsWhereAPlaceLies) {
   EXPECT_TRUE(boundary_loops(repaired(ball(4))).empty());
 }
 
+TEST(BoundaryLoop, OfNoLengthIsAPoint) {
+  const Vec3 place(3, 1, 2);
+  const std::vector<Vec3> points(3, place);
+  const BoundaryLoop loop(points, {0, 1, 2});
+  EXPECT_EQ(loop.length(), 0);
+  for (const double arc : {-1.0, 0.0, 0.5}) EXPECT_EQ(loop.at(arc), place);
+  EXPECT_EQ(loop.nearest(Vec3::Zero()), 0);
+  EXPECT_EQ(loop.turn(1, 0.1), 0);
+}
+
 TEST(BoundaryTower, IsAChainOfCubes) {
   const TriangleSurface surface = open_ball();
   for (const int cubes : {1, 2, 4}) {
@@ -106,6 +116,22 @@ TEST(BoundaryTower, PlacesItsNodesEvenlyFromTheSharpestTurnOn) {
     if (gap < 0) gap += loop.length();
     EXPECT_NEAR(gap, 0.25 * loop.length(), 0.02 * loop.length());
   }
+}
+
+// Long and thin, its nodes anywhere: the polygon that it is mapped to crowds them together, and quads drawn there may fold at first.
+TEST(BoundaryTower, StandsOnStrips) {
+  for (const int length : {16, 23, 30})
+    for (int seed = 0; seed < 6; ++seed)
+      for (const int cubes : {1, 3}) {
+        const TriangleSurface strip = testing::unit(repaired(grid(1, length)));
+        const BoundaryLoop loop = boundary_loops(strip).front();
+        TestRandom random(seed);
+        std::vector<Vec3> nodes;
+        for (int k = 0; k < 4; ++k) nodes.push_back(loop.at(random.unit() * loop.length()));
+        const PatchedSurface base = grow(strip, {nodes, cubes});
+        EXPECT_EQ(base.patch_count(), 4 * cubes + 1);
+        expect_layout(strip, base);
+      }
 }
 
 TEST(BoundaryTower, IsAsHighAsTheSurface) {

@@ -16,6 +16,16 @@
 namespace hybrid_mesh {
 namespace {
 
+DiskLayout fill_disk(const std::vector<int>& quads_at) {
+  Context context;
+  return hybrid_mesh::fill_disk(quads_at, Progress(context));
+}
+
+DiskLayout fill_disk_with_ring(int edges) {
+  Context context;
+  return hybrid_mesh::fill_disk_with_ring(edges, Progress(context));
+}
+
 std::string name(const std::vector<int>& wishes) {
   std::string result;
   for (int q : wishes) result += std::to_string(q) + " ";
@@ -377,6 +387,22 @@ TEST(DiskLayoutWithRing, JoinsNoTwoBoundaryNodesInside) {
       }
   }
   for (const int bad : {-2, 0, 2, 3, 7}) EXPECT_THROW(fill_disk_with_ring(bad), Error);
+}
+
+// Hundreds of edges whose wishes contradict each other may take minutes.
+TEST(DiskLayout, CanBeCancelled) {
+  for (const int n : {6, 40, 400}) {
+    std::vector<int> wishes;
+    for (int i = 0; i < n; ++i) wishes.push_back(1 + (i * i + 3 * i) % 5 % 3);
+    Context context;
+    context.cancel();
+    try {
+      hybrid_mesh::fill_disk(wishes, Progress(context));
+      ADD_FAILURE();
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::Cancelled);
+    }
+  }
 }
 
 }  // namespace

@@ -18,6 +18,16 @@
 namespace hybrid_mesh {
 namespace {
 
+std::vector<DiskLayout> find_fillings(const PatchLayout& layout, const FaceFillingOptions& options = {}) {
+  Context context;
+  return hybrid_mesh::find_fillings(layout, options, Progress(context));
+}
+
+PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options = {}) {
+  Context context;
+  return hybrid_mesh::fill_faces(drawn, options, Progress(context));
+}
+
 using testing::cube_edges;
 using testing::expect_layout;
 using testing::layout_of;

@@ -212,7 +212,8 @@ TEST(RegionPattern, AreJoinedOnceOnly) {
   for (const std::vector<int>& patches : {std::vector<int>{0}, {0, 2}, {0, 2, 5}, {0, 2, 4, 5}, {0, 2, 3, 4, 5}}) {
     const auto region = make_region(cube, patches);
     ASSERT_TRUE(region);
-    const LayoutEdit edit = automatic_edit(cube, *region);
+    Context context;
+    const LayoutEdit edit = automatic_edit(cube, *region, Progress(context));
     EXPECT_EQ(find_filling_defect(edit.quads, static_cast<int>(region->corners.size())), "");
     EXPECT_EQ(find_edit_defect(cube, *region, edit), "");
     EXPECT_EQ(template_edit(*region, edit.quads).inner_nodes, edit.inner_nodes);
