@@ -79,12 +79,41 @@ def wait_until(condition, limit=60.0):
     return time.monotonic() - began
 
 
+def cancel_by_escape(start, unchanged, delays):
+    """Starts a job, presses Esc some seconds later and expects it to end within half a second, once for each delay. Use with `yield from`.
+
+    start(): runs the operator, in the context of the 3D view; unchanged(): asserts that nothing is left of it.
+    """
+    from hybrid_mesh import jobs
+
+    for delay in delays:
+        with bpy.context.temp_override(**view()):
+            assert start() == {"RUNNING_MODAL"}
+        yield delay
+        assert jobs.running(), "it was done before Esc could be pressed"
+        began = time.monotonic()
+        press("ESC")
+        yield from wait_until(lambda: not jobs.running(), 10)
+        seconds = time.monotonic() - began
+        print(f"Esc after {delay} s: ended in {seconds:.2f} s")
+        assert seconds < 0.5
+        yield 0.2
+        unchanged()
+        yield 1
+
+
 def screenshot(name):
     """Kept for people where HYBRID_MESH_SCREENSHOTS names a folder."""
     folder = os.environ.get("HYBRID_MESH_SCREENSHOTS")
     if folder:
         with bpy.context.temp_override(**view()):
             bpy.ops.screen.screenshot(filepath=os.path.join(folder, name + ".png"))
+
+
+def empty_scene():
+    with bpy.context.temp_override(**view()):
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.ops.object.delete()
 
 
 def large_sphere(rings=160):

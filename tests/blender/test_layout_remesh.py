@@ -8,7 +8,8 @@ import numpy
 import pytest
 
 from conftest import module
-from test_layouts import broken_cube, cube_lines, draw, layout_of, read, state, strokes, vector
+from cube import cube_lines
+from test_layouts import broken_cube, draw, layout_of, read, state, strokes, vector
 
 
 def plan_of(obj):

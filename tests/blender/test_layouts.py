@@ -8,9 +8,8 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from conftest import module
+from cube import cube_lines, on_surface
 
-CORNERS = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-EDGES = [(a, b) for i, a in enumerate(CORNERS) for b in CORNERS[i + 1 :] if sum(abs(p - q) for p, q in zip(a, b)) == 2]
 PLACES = [
     {},
     {"location": (5, -2, 1), "rotation_euler": (0.4, -1.2, 2.5)},
@@ -53,22 +52,6 @@ def parented(world, obj):
     obj.parent = parent
     bpy.context.view_layer.update()
     return obj
-
-
-def on_surface(obj, directions):
-    """World-space points of an object's surface, in directions of its own space from its middle."""
-    found = []
-    for direction in directions:
-        hit, place, _, _ = obj.ray_cast((0, 0, 0), tuple(float(value) for value in direction))
-        assert hit
-        found.append(obj.matrix_world @ place)
-    return numpy.array(found)
-
-
-def cube_lines(obj, count=9):
-    """The twelve edges of a cube, as seen from the middle of a ball-like object, as lines on its surface."""
-    t = numpy.linspace(0, 1, count)[:, None]
-    return [on_surface(obj, numpy.array(a) + t * (numpy.array(b) - numpy.array(a))) for a, b in EDGES]
 
 
 def broken_cube(obj):

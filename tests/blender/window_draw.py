@@ -18,9 +18,8 @@ from hybrid_mesh.features.layouts import panel, properties  # noqa: E402
 def steps():
     show_panel()
     view = stepper.view()
+    stepper.empty_scene()
     with bpy.context.temp_override(**view):
-        bpy.ops.object.select_all(action="SELECT")
-        bpy.ops.object.delete()
         scan = stepper.large_sphere(30)
         scan.rotation_euler, scan.scale, scan.location = (0.5, 0.3, 1.1), (1.6, 0.8, 1.1), (1, 0.5, -0.3)
         bpy.ops.view3d.view_selected()
