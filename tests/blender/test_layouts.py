@@ -422,6 +422,67 @@ def test_nothing_to_check(world):
         bpy.ops.hybrid_mesh.check_layout()
 
 
+def test_a_check_is_done_when_it_returns_where_there_is_no_window(world):
+    scan = world.scan()
+    draw(scan, broken_cube(scan))
+    assert bpy.app.background and bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT") == {"FINISHED"}
+    assert not module("jobs").running() and layout_of(scan, "CURVES") is not None and len(layout_of(scan).hybrid_mesh_layout.problems)
+
+
+def test_a_check_that_fails_changes_nothing(world, monkeypatch):
+    scan = world.scan()
+    layout = draw(scan, broken_cube(scan))
+    check()
+    problems = [(problem.kind, problem.message) for problem in layout.hybrid_mesh_layout.problems]
+    before = {obj: read(obj) for obj in bpy.data.objects if strokes().is_grease_pencil(obj)}, problems, layout.hybrid_mesh_layout.summary, bpy.context.mode
+
+    def refuse(*_):
+        raise world.native().InvalidInput("not this one")
+
+    monkeypatch.setattr(world.native(), "start_layout_plan", refuse)
+    with pytest.raises(RuntimeError, match="scan: not this one"):
+        bpy.ops.hybrid_mesh.check_layout()
+    after = [(problem.kind, problem.message) for problem in layout.hybrid_mesh_layout.problems]
+    assert after == before[1] and layout.hybrid_mesh_layout.summary == before[2] and bpy.context.mode == before[3]
+    assert all(all(map(numpy.array_equal, read(obj), lines)) for obj, lines in before[0].items()) and len(bpy.data.objects) == 1 + len(before[0])
+
+
+def meanwhile(world, monkeypatch, change):
+    """Has something change after the work of a layout has begun."""
+    start = world.native().start_layout_plan
+
+    def start_and_change(*given):
+        job = start(*given)
+        change()
+        return job
+
+    monkeypatch.setattr(world.native(), "start_layout_plan", start_and_change)
+
+
+@pytest.mark.parametrize("operator", ["check_layout", "remesh_layout"])
+def test_problems_are_of_the_strokes_that_were_read(world, monkeypatch, operator):
+    scan = world.scan()
+    layout = draw(scan, [*cube_lines(scan), cube_lines(scan)[0] + 50])
+    meanwhile(world, monkeypatch, lambda: strokes().remove_layers(layout))
+    if operator == "check_layout":
+        check()
+    else:
+        with pytest.raises(RuntimeError, match="marked in red"):
+            bpy.ops.hybrid_mesh.remesh_layout()
+    assert [(problem.kind, problem.layer, problem.number) for problem in layout.hybrid_mesh_layout.problems] == [("off_surface", "Layout", 12)]
+
+
+@pytest.mark.parametrize("kind", [None, "DRAWN"])
+def test_what_is_checked_may_go(world, monkeypatch, kind):
+    scan = world.scan()
+    draw(scan, broken_cube(scan))
+    gone = layout_of(scan) if kind else scan
+    meanwhile(world, monkeypatch, lambda: bpy.data.objects.remove(gone))
+    with pytest.raises(RuntimeError, match="gone"):
+        bpy.ops.hybrid_mesh.check_layout()
+    assert len(bpy.data.objects) == 1
+
+
 def test_modifiers_and_quads_count(world):
     # A cube of six quads that a modifier makes round: what is drawn on is what is seen.
     box = world.box()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Esc ends a running remesh of 50,000 vertices within half a second and leaves nothing; one that is let run is one undo step."""
+"""Esc ends a running remesh of 50,000 vertices and leaves nothing; one that is let run is one undo step."""
 
 import os
 import sys

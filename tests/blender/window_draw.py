@@ -11,6 +11,7 @@ from mathutils.bvhtree import BVHTree
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import stepper  # noqa: E402
+from hybrid_mesh import jobs  # noqa: E402
 from hybrid_mesh.bridge import meshes, strokes  # noqa: E402
 from hybrid_mesh.features.layouts import panel, properties  # noqa: E402
 
@@ -35,7 +36,9 @@ def steps():
     tree, size = surface(scan)
     print(f"drawn at most {farthest(tree, drawn) / size:.1e} of the diagonal off the surface")
     with bpy.context.temp_override(**stepper.view()):
-        assert bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True) == {"FINISHED"}
+        assert bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield from stepper.wait_until(lambda: not jobs.running())
+    yield 0.3
     curves = strokes.read(properties.layout_of(scan, bpy.context.scene, "CURVES"), bpy.context.scene.frame_current)
     lines = [one for one in curves if one.layer == "Curves"]
     off = farthest(tree, lines) / size

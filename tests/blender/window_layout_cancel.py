@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Esc ends Remesh from Layout within half a second, whatever it is at, and leaves the mesh, its layout and the mode as they were."""
+"""Esc ends Check Layout and Remesh from Layout, whatever they are at, and leaves the mesh, its layout and the mode as they were."""
 
 import os
 import sys
@@ -28,7 +28,7 @@ def steps():
     stepper.empty_scene()
     with bpy.context.temp_override(**stepper.view()):
         # Not what is measured: how long a software renderer takes to draw so many faces.
-        scan = stepper.large_sphere()
+        scan = stepper.large_sphere(200)
         scan.display_type = "BOUNDS"
         assert bpy.ops.hybrid_mesh.draw_layout() == {"FINISHED"}
         layout = properties.layout_of(scan, bpy.context.scene)
@@ -41,7 +41,16 @@ def steps():
     def unchanged():
         assert state() == before
 
+    yield from stepper.cancel_by_escape(lambda: bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True), unchanged, (0, 0.1))
     yield from stepper.cancel_by_escape(lambda: bpy.ops.hybrid_mesh.remesh_layout("INVOKE_DEFAULT", True), unchanged, (1.0, 0.1, 0.3))
+    with bpy.context.temp_override(**stepper.view()):
+        assert bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+        # A second one has to wait its turn.
+        assert bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True) == {"CANCELLED"}
+    yield from stepper.wait_until(lambda: not jobs.running())
+    yield 0.3
+    assert layout.hybrid_mesh_layout.summary == "8 nodes, 12 curves, 6 faces" and bpy.context.mode == "PAINT_GPENCIL"
+    assert state()[2] == before[2] and properties.layout_of(scan, bpy.context.scene, "CURVES") is not None
     # The layout is one that can be remeshed.
     bpy.context.scene.hybrid_mesh.vertices = 2000
     with bpy.context.temp_override(**stepper.view()):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import contextlib
+from dataclasses import dataclass, replace
 
 import bpy
 import mathutils
@@ -10,21 +10,38 @@ from ... import compat
 from ...bridge import arrays, meshes, strokes, transfer
 from ...core import plans, regions
 from ...core import settings as core
-from ...core.native import NativeMissing, explain, native
+from ...core.native import native
 from ...core.tasks import Chain, Task
+from ...jobs import NativeJobOperator
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
 from ..remesh.properties import CUBES, core_settings
 from . import drawing, properties
 
 
-class LayoutProblemsError(ValueError):
-    """A drawn layout that cannot be remeshed. result: what the native module made of it."""
+@dataclass
+class LayoutInput:
+    """What is drawn on a mesh object, without bpy data: those may go while a job works on it."""
 
-    def __init__(self, result):
+    surface: str
+    layout: str
+    source: meshes.Source
+    strokes: list  # of strokes.Stroke, without their materials
+    given: list  # the same, as the native module takes them
+    snap: float
+
+    def start(self):
+        """A native job that makes a layout, and a plan of it where it has no problems."""
+        return native().start_layout_plan(*_triangles(self.source), self.given, self.snap)
+
+
+class LayoutProblemsError(ValueError):
+    """A drawn layout that cannot be remeshed. drawn: the LayoutInput; result: what the native module made of it."""
+
+    def __init__(self, drawn, result):
         problems = result["problems"]
         super().__init__(f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}")
-        self.result = result
+        self.drawn, self.result = drawn, result
 
 
 class _OnSurface:
@@ -79,28 +96,21 @@ class HYBRID_MESH_OT_draw_layout(_OnSurface, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class HYBRID_MESH_OT_check_layout(_OnLayout, bpy.types.Operator):
+class HYBRID_MESH_OT_check_layout(_OnLayout, NativeJobOperator):
     """Make curves on the surface of the strokes drawn, and show them and whatever keeps them from being a patch layout"""
 
     bl_idname = "hybrid_mesh.check_layout"
     bl_label = "Check Layout"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context):
-        surface = properties.surface_of(context.object, context.scene)
-        try:
-            source = meshes.read_source(surface, context.evaluated_depsgraph_get())
-            layout, drawn = drawing.read_drawn(context, surface)
-            with _waiting(context):
-                result = native().make_layout(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
-        except (ValueError, NativeMissing) as error:
-            self.report({"ERROR"}, f"{surface.name}: {error}")
-            return {"CANCELLED"}
-        except native().Error as error:
-            self.report({"ERROR"}, f"{surface.name}: {explain(error)}")
-            return {"CANCELLED"}
-        _show_check(self, context, surface, layout, drawn, result, source)
-        return {"FINISHED"}
+    def prepare(self, context):
+        drawn = _read_input(context)
+        return [Task(drawn.surface, drawn.start, drawn)]
+
+    def finish(self, context, results):
+        ((task, result),) = results
+        if not _show_check(self, context, task.note, result):
+            raise ValueError(f"{task.note.surface}: the object or its layout is gone from the scene; nothing is shown")
 
 
 class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
@@ -136,18 +146,15 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
     bl_options = {"REGISTER", "UNDO"}
 
     def prepare(self, context):
-        surface = properties.surface_of(context.object, context.scene)
         settings = core_settings(context.scene.hybrid_mesh)
-        source = meshes.read_source(surface, context.evaluated_depsgraph_get(), transfer.collect)
-        layout, drawn = drawing.read_drawn(context, surface)
-        name, given, snap = surface.name, drawing.for_native(drawn), layout.hybrid_mesh_layout.snap
+        drawn = _read_input(context, transfer.collect)
 
         def remesh(result):
             if result["problems"]:
-                raise LayoutProblemsError(result)
-            return source_task(name, source, settings, result["plan"]).start()
+                raise LayoutProblemsError(drawn, result)
+            return source_task(drawn.surface, drawn.source, settings, result["plan"]).start()
 
-        return [Task(name, lambda: Chain(native().start_layout_plan(*_triangles(source), given, snap), remesh), (source, settings))]
+        return [Task(drawn.surface, lambda: Chain(drawn.start(), remesh), (drawn.source, settings))]
 
     def finish(self, context, results):
         _to_object_mode(context)
@@ -160,13 +167,10 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
             drawing.hide(context, surface)
 
     def failed(self, context, task, error):
-        surface = context.scene.objects.get(task.name)
-        layout = properties.layout_of(surface, context.scene) if surface is not None else None
-        if isinstance(error, LayoutProblemsError) and layout is not None:
-            _show_check(self, context, surface, layout, strokes.read(layout, context.scene.frame_current), error.result, task.note[0])
-            _push_marks()
-        else:
+        if not isinstance(error, LayoutProblemsError):
             _show_failure(context, task.name, error)
+        elif _show_check(self, context, error.drawn, error.result):
+            _push_marks()
 
     def hides_source(self, context):
         return context.scene.hybrid_mesh.hide_source
@@ -297,17 +301,16 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
         return False
 
 
-@contextlib.contextmanager
-def _waiting(context):
-    """A layout takes some seconds where the surface has millions of triangles."""
-    window = None if bpy.app.background else context.window
-    if window is not None:
-        window.cursor_modal_set("WAIT")
+def _read_input(context, collect=None):
+    """The LayoutInput of the mesh object that the active object stands for; raises ValueError. collect: as in meshes.read_source()."""
+    surface = properties.surface_of(context.object, context.scene)
     try:
-        yield
-    finally:
-        if window is not None:
-            window.cursor_modal_restore()
+        source = meshes.read_source(surface, context.evaluated_depsgraph_get(), collect)
+        layout, found = drawing.read_drawn(context, surface)
+    except ValueError as error:
+        raise ValueError(f"{surface.name}: {error}") from error
+    kept = [replace(stroke, material=None) for stroke in found]
+    return LayoutInput(surface.name, layout.name, source, kept, drawing.for_native(found), layout.hybrid_mesh_layout.snap)
 
 
 def _triangles(source):
@@ -322,17 +325,21 @@ def _count(number, things):
     return f"{number} {things.removesuffix('s') if number == 1 else things}"
 
 
-def _show_check(operator, context, surface, layout, drawn, result, source):
-    """Shows what was made of the strokes, and says it."""
-    size = _diagonal(source.mesh.points)
+def _show_check(operator, context, drawn, result):
+    """Shows what was made of a LayoutInput, and says it; returns whether there is still something to show it with."""
+    surface, layout = (context.scene.objects.get(name) for name in (drawn.surface, drawn.layout))
+    if surface is None or layout is None:
+        return False
+    size = _diagonal(drawn.source.mesh.points)
     drawing.show_curves(context, surface, result, size)
-    drawing.show_problems(context, surface, layout, drawn, result["problems"], size)
+    drawing.show_problems(context, surface, layout, drawn.strokes, result["problems"], size)
     count = ", ".join(_count(len(result[things]), things) for things in ("nodes", "curves", "faces"))
     layout.hybrid_mesh_layout.summary = count
     for problem in result["problems"]:
-        operator.report({"WARNING"}, _words(problem, drawn))
+        operator.report({"WARNING"}, _words(problem, drawn.strokes))
     if not result["problems"]:
         operator.report({"INFO"}, f"{surface.name}: {count}; nothing is wrong")
+    return True
 
 
 def _words(problem, drawn):
