@@ -173,6 +173,13 @@ def test_problems_of_a_region_are_marked(world, region):
     assert len(layout.hybrid_mesh_layout.problems) and layout_of(region.level, "PROBLEMS") is not None
 
 
+def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
+    bad = region.line()
+    bad[1] = numpy.nan
+    region.draw([region.line(), bad])
+    refused(bpy.ops.hybrid_mesh.repatch_region, "scan.N1.layout: .*not finite .stroke 2 of Layout.")
+
+
 def test_what_is_no_region(world, region):
     refused(bpy.ops.hybrid_mesh.repatch_region, "no layout")
     region.draw([region.line()])

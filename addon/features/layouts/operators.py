@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-from dataclasses import dataclass, replace
-
 import bpy
 import mathutils
 import numpy
 from bpy.props import EnumProperty, IntProperty
 
 from ... import compat
-from ...bridge import arrays, meshes, strokes, transfer
+from ...bridge import arrays, meshes, objects, strokes, transfer
 from ...core import plans, regions
 from ...core import settings as core
 from ...core.native import native
@@ -19,29 +17,13 @@ from ..remesh.properties import CUBES, core_settings
 from . import drawing, properties
 
 
-@dataclass
-class LayoutInput:
-    """What is drawn on a mesh object, without bpy data: those may go while a job works on it."""
-
-    surface: str
-    layout: str
-    source: meshes.Source
-    strokes: list  # of strokes.Stroke, without their materials
-    given: list  # the same, as the native module takes them
-    snap: float
-
-    def start(self):
-        """A native job that makes a layout, and a plan of it where it has no problems."""
-        return native().start_layout_plan(*_triangles(self.source), self.given, self.snap)
-
-
 class LayoutProblemsError(ValueError):
-    """A drawn layout that cannot be remeshed. drawn: the LayoutInput; result: what the native module made of it."""
+    """A drawn layout that cannot be remeshed. result: what the native module made of it."""
 
-    def __init__(self, drawn, result):
+    def __init__(self, result):
         problems = result["problems"]
         super().__init__(f"The layout has {_count(len(problems), 'problems')}, marked in red and listed in the panel Patch Layout: {problems[0]['message']}")
-        self.drawn, self.result = drawn, result
+        self.result = result
 
 
 class _OnSurface:
@@ -65,7 +47,7 @@ class _OnLayout(_OnSurface):
         if context.object.type == "MESH" and context.mode != "OBJECT":
             cls.poll_message_set("Works in Object Mode, and in the modes of Grease Pencil")
             return False
-        if properties.layout_of(properties.surface_of(context.object, context.scene), context.scene) is None:
+        if properties.drawn_on(properties.surface_of(context.object, context.scene), context) is None:
             cls.poll_message_set("The object has no layout; Draw Layout makes one")
             return False
         return True
@@ -86,8 +68,12 @@ class HYBRID_MESH_OT_draw_layout(_OnSurface, bpy.types.Operator):
         except arrays.MatrixError as error:
             self.report({"ERROR"}, f"{surface.name}: {error}")
             return {"CANCELLED"}
+        try:
+            layout = drawing.drawn_layout(context, surface)
+        except drawing.LayoutInputError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         _to_object_mode(context)
-        layout = drawing.drawn_layout(context, surface)
         _select_only(context, layout)
         compat.draw_on_surfaces(context.scene.tool_settings, layout.data)
         bpy.ops.object.mode_set(mode=strokes.draw_mode(layout))
@@ -104,13 +90,13 @@ class HYBRID_MESH_OT_check_layout(_OnLayout, NativeJobOperator):
     bl_options = {"REGISTER", "UNDO"}
 
     def prepare(self, context):
-        drawn = _read_input(context)
-        return [Task(drawn.surface, drawn.start, drawn)]
+        source, drawn = _read(context)
+        return [Task(source.key[0], lambda: _start(source, drawn), (source, drawn))]
 
     def finish(self, context, results):
         ((task, result),) = results
-        if not _show_check(self, context, task.note, result):
-            raise ValueError(f"{task.note.surface}: the object or its layout is gone from the scene; nothing is shown")
+        if not _show_check(self, context, *task.note, result):
+            raise ValueError(f"{task.name}: the object or its layout is gone from the scene; nothing is shown")
 
 
 class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
@@ -124,7 +110,7 @@ class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
 
     def execute(self, context):
         surface = properties.surface_of(context.object, context.scene)
-        layout = properties.layout_of(surface, context.scene)
+        layout = properties.drawn_on(surface, context)
         found = layout.hybrid_mesh_layout.problems
         if self.index >= len(found):
             self.report({"ERROR"}, f"The layout has {_count(len(found), 'problems')}; there is no number {self.index}")
@@ -145,31 +131,35 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
     bl_label = "Remesh from Layout"
     bl_options = {"REGISTER", "UNDO"}
 
+    _drawn = None  # drawing.Drawn
+
     def prepare(self, context):
         settings = core_settings(context.scene.hybrid_mesh)
-        drawn = _read_input(context, transfer.collect)
+        source, drawn = _read(context, transfer.collect)
+        self._drawn = drawn
 
         def remesh(result):
             if result["problems"]:
-                raise LayoutProblemsError(drawn, result)
-            return source_task(drawn.surface, drawn.source, settings, result["plan"]).start()
+                raise LayoutProblemsError(result)
+            return source_task(source.key[0], source, settings, result["plan"]).start()
 
-        return [Task(drawn.surface, lambda: Chain(drawn.start(), remesh), (drawn.source, settings))]
+        return [Task(source.key[0], lambda: Chain(_start(source, drawn), remesh), (source, settings))]
 
     def finish(self, context, results):
         _to_object_mode(context)
         super().finish(context, results)
-        surface = context.scene.objects[results[0][0].name]
-        layout = properties.layout_of(surface, context.scene)
+        surface = objects.find(context.scene, results[0][0].note[0].key)
+        layout = objects.find(context.scene, self._drawn.layout)
         if layout is not None:
             drawing.forget_problems(context, surface, layout)
         if self.hides_source(context):
             drawing.hide(context, surface)
 
     def failed(self, context, task, error):
+        source = task.note[0]
         if not isinstance(error, LayoutProblemsError):
-            _show_failure(context, task.name, error)
-        elif _show_check(self, context, error.drawn, error.result):
+            _show_failure(context, source.key, self._drawn, error)
+        elif _show_check(self, context, source, self._drawn, error.result):
             _push_marks()
 
     def hides_source(self, context):
@@ -204,7 +194,8 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
             nodes = _boundary_nodes(surface)
             surface.update_from_editmode()
         settings = core_settings(context.scene.hybrid_mesh)
-        return [remesh_task(surface, context.evaluated_depsgraph_get(), settings, plans.boundary_plan(nodes, self.cubes))]
+        with objects.evaluated(context, surface) as graph:
+            return [remesh_task(surface, graph, settings, plans.boundary_plan(nodes, self.cubes))]
 
     def finish(self, context, results):
         _to_object_mode(context)
@@ -239,8 +230,8 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     source: EnumProperty(name="Operation", description="The operation whose layout is copied", items=_source_items)
 
-    _level = ""  # names, because the objects may go while the work runs
-    _hierarchy = ""
+    _level = _hierarchy = None  # objects.key_of() them
+    _drawn = None  # drawing.Drawn, if curves were drawn
 
     @classmethod
     def poll(cls, context):
@@ -255,19 +246,20 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             self.layout.prop(self, "source")
 
     def prepare(self, context):
+        self._drawn = None
         level = properties.surface_of(context.object, context.scene)
         hierarchy = level.hybrid_mesh.hierarchy
-        graph = context.evaluated_depsgraph_get()
         source = hierarchy.hybrid_mesh.source
-        if source is None or context.scene.objects.get(source.name) != source:
+        if source is None or not objects.in_scene(source, context.scene):
             raise ValueError(f"{hierarchy.name}: the object that it was made of is gone from the scene")
         plan = hierarchy_properties.plan_of(hierarchy)
         if not plan:
             raise ValueError(f"{hierarchy.name} has no plan; remesh {source.name} again")
         addresses = _selected_quads(level, hierarchy)
         operation = plans.repatch_operation(_level_number(level), addresses, self._new_layout(context, level, hierarchy), self.buffer_rings)
-        self._level, self._hierarchy = level.name, hierarchy.name
-        return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
+        self._level, self._hierarchy = objects.key_of(level), objects.key_of(hierarchy)
+        with objects.evaluated(context, source) as graph:
+            return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
 
     def _new_layout(self, context, level, hierarchy):
         if self.layout_kind == "AUTOMATIC":
@@ -276,41 +268,47 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             return plans.cubes_layout(self.height)
         if self.layout_kind == "COPY":
             return _copied_layout(level, hierarchy, self.source, self.turn)
-        _, drawn = drawing.read_drawn(context, level)
-        return plans.drawn_layout([(stroke.points, drawing.fit_of(stroke)) for stroke in drawn])
+        self._drawn = drawn = drawing.read_drawn(context, level)
+        for stroke in drawn.strokes:
+            if not numpy.isfinite(stroke.points).all():
+                raise ValueError(f"{drawn.layout[0]}: {_named('a stroke has points that are not finite', stroke)}")
+        return plans.drawn_layout([(stroke.points, fit) for stroke, fit in zip(drawn.strokes, drawn.fits, strict=True)])
 
     def finish(self, context, results):
         _to_object_mode(context)
         super().finish(context, results)
-        level = context.scene.objects.get(self._level)
+        level = objects.find(context.scene, self._level)
         if level is not None:
-            layout = properties.layout_of(level, context.scene)
+            layout = objects.find(context.scene, self._drawn.layout) if self._drawn is not None else properties.layout_of(level, context.scene)
             if layout is not None:
                 drawing.forget_problems(context, level, layout)
             drawing.hide(context, level)
         hierarchy = bpy.data.collections.get(self._hierarchy)
         for obj in hierarchy.objects if hierarchy is not None else ():
             # What was made before would cover what is new.
-            if obj.name in context.view_layer.objects:
+            if objects.in_view_layer(obj, context.view_layer):
                 obj.hide_set(True)
 
     def failed(self, context, task, error):
-        _show_failure(context, self._level, error)
+        _show_failure(context, self._level, self._drawn, error)
 
     def hides_source(self, context):
         return False
 
 
-def _read_input(context, collect=None):
-    """The LayoutInput of the mesh object that the active object stands for; raises ValueError. collect: as in meshes.read_source()."""
+def _read(context, collect=None):
+    """The meshes.Source and the drawing.Drawn of the mesh object that the active object stands for; raises ValueError. collect: as in meshes.read_source()."""
     surface = properties.surface_of(context.object, context.scene)
     try:
-        source = meshes.read_source(surface, context.evaluated_depsgraph_get(), collect)
-        layout, found = drawing.read_drawn(context, surface)
+        with objects.evaluated(context, surface) as graph:
+            return meshes.read_source(surface, graph, collect), drawing.read_drawn(context, surface)
     except ValueError as error:
         raise ValueError(f"{surface.name}: {error}") from error
-    kept = [replace(stroke, material=None) for stroke in found]
-    return LayoutInput(surface.name, layout.name, source, kept, drawing.for_native(found), layout.hybrid_mesh_layout.snap)
+
+
+def _start(source, drawn):
+    """A native job that makes a layout, and a plan of it where it has no problems."""
+    return native().start_layout_plan(*_triangles(source), drawn.for_native(), drawn.snap)
 
 
 def _triangles(source):
@@ -325,39 +323,36 @@ def _count(number, things):
     return f"{number} {things.removesuffix('s') if number == 1 else things}"
 
 
-def _show_check(operator, context, drawn, result):
-    """Shows what was made of a LayoutInput, and says it; returns whether there is still something to show it with."""
-    surface, layout = (context.scene.objects.get(name) for name in (drawn.surface, drawn.layout))
+def _show_check(operator, context, source, drawn, result):
+    """Shows what was made of what is drawn, and says it; returns whether there is still something to show it with."""
+    surface, layout = objects.find(context.scene, source.key), objects.find(context.scene, drawn.layout)
     if surface is None or layout is None:
         return False
-    size = _diagonal(drawn.source.mesh.points)
+    size = _diagonal(source.mesh.points)
     drawing.show_curves(context, surface, result, size)
     drawing.show_problems(context, surface, layout, drawn.strokes, result["problems"], size)
     count = ", ".join(_count(len(result[things]), things) for things in ("nodes", "curves", "faces"))
     layout.hybrid_mesh_layout.summary = count
     for problem in result["problems"]:
-        operator.report({"WARNING"}, _words(problem, drawn.strokes))
+        number = problem["stroke"]
+        operator.report({"WARNING"}, _named(problem["message"], drawn.strokes[number]) if 0 <= number < len(drawn.strokes) else problem["message"])
     if not result["problems"]:
         operator.report({"INFO"}, f"{surface.name}: {count}; nothing is wrong")
     return True
 
 
-def _words(problem, drawn):
-    stroke = problem["stroke"]
-    return f"{problem['message']} (stroke {drawn[stroke].number + 1} of {drawn[stroke].layer})" if 0 <= stroke < len(drawn) else problem["message"]
+def _named(words, stroke):
+    return f"{words} (stroke {stroke.number + 1} of {stroke.layer})"
 
 
-def _show_failure(context, name, error):
-    """Marks what the native module says of the curves of a region."""
-    if type(error).__name__ != "LayoutError" or len(error.args) < 2:
+def _show_failure(context, key, drawn, error):
+    """Marks what the native module says of the curves of a region. key: of the object that they are drawn on."""
+    surface = objects.find(context.scene, key)
+    layout = objects.find(context.scene, drawn.layout) if drawn is not None else None
+    if surface is None or layout is None or type(error).__name__ != "LayoutError" or len(error.args) < 2:
         return
-    surface = context.scene.objects.get(name)
-    layout = properties.layout_of(surface, context.scene) if surface is not None else None
-    if layout is None:
-        return
-    drawn = strokes.read(layout, context.scene.frame_current)
     points = numpy.array([surface.matrix_world @ mathutils.Vector(corner) for corner in surface.bound_box])
-    drawing.show_problems(context, surface, layout, drawn, error.args[1], _diagonal(points))
+    drawing.show_problems(context, surface, layout, drawn.strokes, error.args[1], _diagonal(points))
     _push_marks()
 
 
@@ -465,7 +460,7 @@ def _look_at(context, surface, place, size):
     """Turns the 3D views of the window to a place, from outside the surface."""
     if context.window is None:
         return
-    inverse = surface.matrix_world.inverted()
+    inverse = surface.matrix_world.inverted_safe()
     try:
         found, _, normal, _ = surface.evaluated_get(context.evaluated_depsgraph_get()).closest_point_on_mesh(inverse @ place)
     except RuntimeError:  # It has no faces any more.
