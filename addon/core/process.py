@@ -38,7 +38,7 @@ class Processes:
             timer.daemon = True
             timer.start()
         errors = []
-        drain = threading.Thread(target=lambda: errors.extend(process.stderr), daemon=True)
+        drain = threading.Thread(target=_read_all, args=(process.stderr, errors), daemon=True)
         drain.start()
         answer = None
         try:
@@ -48,7 +48,7 @@ class Processes:
             except OSError:
                 pass  # The child is gone; how it ended says why.
             for line in process.stdout:
-                if line.startswith(RESULT_MARK):
+                if line.startswith(RESULT_MARK) and line.endswith("\n"):  # One that is cut off is no answer.
                     answer = json.loads(line[len(RESULT_MARK) :])
             code = process.wait()
             drain.join(5)
@@ -100,6 +100,11 @@ class Processes:
                 stream.close()
             except OSError:
                 pass
+
+
+def _read_all(stream, lines):
+    with stream:
+        lines.extend(stream)
 
 
 def in_blender():
