@@ -173,6 +173,18 @@ def test_problems_of_a_region_are_marked(world, region):
     assert len(layout.hybrid_mesh_layout.problems) and layout_of(region.level, "PROBLEMS") is not None
 
 
+def test_quads_that_were_replaced_are_no_region(world, region):
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    before = level_of(bpy.context.object, "M1")  # the level without the operation
+    before.hide_set(False)
+    found = [address(before, face) for face in range(len(before.data.polygons))]
+    replaced = {found.index(one) for one in region.addresses}
+    select_faces(world, before, {*replaced, next(face for face in range(len(found)) if face not in replaced)})
+    refused(bpy.ops.hybrid_mesh.repatch_region, "2 of the selected faces of scan.M1 .* select faces of scan.N1", layout_kind="AUTOMATIC")
+
+
 def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
     bad = region.line()
     bad[1] = numpy.nan

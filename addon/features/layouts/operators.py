@@ -382,13 +382,31 @@ def _selected_quads(level, hierarchy):
     made_by_hand = int((path[chosen] < 1).sum())
     if made_by_hand:
         raise ValueError(f"{made_by_hand} of the selected faces of {level.name} were not made by a remesh; deselect them")
+    _refuse_replaced(level, hierarchy, list(zip(root[chosen].tolist(), path[chosen].tolist())))
     known = []
-    for obj in hierarchy.objects:
-        if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy:
-            roots, paths = _addresses(obj)
-            if roots is not None:
-                known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
+    for obj in _levels(hierarchy):
+        roots, paths = _addresses(obj)
+        if roots is not None:
+            known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
     return plans.quad_addresses(_level_number(level), root[chosen].tolist(), path[chosen].tolist(), plans.root_levels(known))
+
+
+def _refuse_replaced(level, hierarchy, quads):
+    """Raises ValueError where quads (root, path) of a level before its operations are not there after them."""
+    name = f"N{_level_number(level)}"
+    after = next((obj for obj in _levels(hierarchy) if obj.hybrid_mesh.level == name), None)
+    root, path = _addresses(after) if after is not None and after != level else (None, None)
+    if root is None:
+        return
+    there = set(zip(root.tolist(), path.tolist()))
+    replaced = sum(quad not in there for quad in quads)
+    if replaced:
+        raise ValueError(f"{replaced} of the selected faces of {level.name} {'has' if replaced == 1 else 'have'} been laid out anew already; select faces of {after.name}")
+
+
+def _levels(hierarchy):
+    """The level objects of a hierarchy that are in its collection."""
+    return [obj for obj in hierarchy.objects if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy]
 
 
 def _copied_layout(level, hierarchy, source, turn):
@@ -410,7 +428,7 @@ def _removed_counts(hierarchy, operation):
     """regions.corner_counts() of the quads that an operation replaced, from its layout's corner 0 on; all 0 where the level that had them is gone."""
     unknown = [0] * operation["corners"]
     name = f"M{operation['level']}"
-    before = next((obj for obj in hierarchy.objects if properties.is_level(obj) and obj.hybrid_mesh.level == name and obj.mode == "OBJECT"), None)
+    before = next((obj for obj in _levels(hierarchy) if obj.hybrid_mesh.level == name and obj.mode == "OBJECT"), None)
     root, path = _addresses(before) if before is not None else (None, None)
     if root is None:
         return unknown
