@@ -82,10 +82,13 @@ class Processes:
             if self._ended:
                 raise WorkerFailed("cancelled")
             # A session of its own: Ctrl-C reaches this process only, which then ends the children.
-            process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
-                start_new_session=os.name == "posix", env=_environment(),
-            )  # fmt: skip
+            try:
+                process = subprocess.Popen(
+                    command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
+                    start_new_session=os.name == "posix", env=_environment(),
+                )  # fmt: skip
+            except OSError as error:
+                raise WorkerFailed(f"no process for it could be started ({error.strerror})") from error
             self._running.add(process)
             return process
 

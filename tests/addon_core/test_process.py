@@ -19,6 +19,12 @@ def test_an_answer_that_is_cut_off_is_none(monkeypatch, end, words):
         process.Processes().run({})
 
 
+def test_a_process_that_cannot_be_started_is_a_failure(monkeypatch, tmp_path):
+    monkeypatch.setattr(process, "worker_command", lambda needs_bpy=False: [str(tmp_path / "none")])
+    with pytest.raises(process.WorkerFailed, match="started.*No such file"):
+        process.Processes().run({})
+
+
 def test_nothing_stays_open(monkeypatch):
     child(monkeypatch, "print('on the way', file=sys.stderr)\nprint(mark + '{}', flush=True)")
     with warnings.catch_warnings(record=True) as seen:
