@@ -6,6 +6,11 @@ import contextlib
 import bpy
 
 
+def active(context):
+    """The active object, or None. Without a window the context has no member `object`."""
+    return context.view_layer.objects.active
+
+
 def key_of(block):
     """What finds a data-block again, whatever has become of it: a library may have one of the same name."""
     return block.name, block.library.filepath if block.library else None

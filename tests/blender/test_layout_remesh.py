@@ -275,7 +275,10 @@ def test_a_layout_is_copied_to_another_region(world, place):
     select_faces(world, level, {far})
     refused(bpy.ops.hybrid_mesh.repatch_region, "has 4 sides.*6", layout_kind="COPY", source="0")
     select_faces(world, level, pair)
-    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="COPY", source="0") == {"FINISHED"}
+    hierarchy = level.hybrid_mesh.hierarchy.hybrid_mesh
+    # An operation whose quads are no disk cannot be copied; the first one that can be is what is copied where nothing is said.
+    hierarchy.operations = json.dumps([{**json.loads(hierarchy.operations)[0], "corners": 0}, *json.loads(hierarchy.operations)])
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="COPY") == {"FINISHED"}
     made = operations(bpy.context.object)
     assert len(made) == 2 and made[0]["new_quads"] == made[1]["new_quads"] and made[0]["quads"] != made[1]["quads"]
     # The removed quads lie in their layout in the same way.

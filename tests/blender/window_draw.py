@@ -68,6 +68,11 @@ def steps():
     layout = properties.layout_of(scan, bpy.context.scene)
     assert properties.layout_of(scan, bpy.context.scene, "CURVES") is None and not layout.hybrid_mesh_layout.problems
     assert len(strokes.read(layout, bpy.context.scene.frame_current)) == 2
+    # Without a window, as a script may be, a check is done when it returns.
+    with bpy.context.temp_override(window=None, screen=None, area=None, region=None):
+        assert bpy.ops.hybrid_mesh.check_layout() == {"FINISHED"}
+        assert bpy.ops.hybrid_mesh.show_problem(index=0) == {"FINISHED"}
+    assert [problem.kind for problem in layout.hybrid_mesh_layout.problems].count("dangling") == 4
 
 
 def show_panel():

@@ -31,7 +31,7 @@ class _OnSurface:
 
     @classmethod
     def poll(cls, context):
-        if properties.surface_of(context.object, context.scene) is None:
+        if properties.surface_of(objects.active(context), context.scene) is None:
             cls.poll_message_set("Make a mesh object, or its layout, the active object")
             return False
         return True
@@ -44,10 +44,10 @@ class _OnLayout(_OnSurface):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if context.object.type == "MESH" and context.mode != "OBJECT":
+        if objects.active(context).type == "MESH" and context.mode != "OBJECT":
             cls.poll_message_set("Works in Object Mode, and in the modes of Grease Pencil")
             return False
-        if properties.drawn_on(properties.surface_of(context.object, context.scene), context) is None:
+        if properties.drawn_on(properties.surface_of(objects.active(context), context.scene), context) is None:
             cls.poll_message_set("The object has no layout; Draw Layout makes one")
             return False
         return True
@@ -61,7 +61,7 @@ class HYBRID_MESH_OT_draw_layout(_OnSurface, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
-        surface = properties.surface_of(context.object, context.scene)
+        surface = properties.surface_of(objects.active(context), context.scene)
         context.view_layer.update()
         try:
             arrays.world_matrix(surface.matrix_world)
@@ -109,7 +109,7 @@ class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
     index: IntProperty(name="Problem", min=0)
 
     def execute(self, context):
-        surface = properties.surface_of(context.object, context.scene)
+        surface = properties.surface_of(objects.active(context), context.scene)
         layout = properties.drawn_on(surface, context)
         found = layout.hybrid_mesh_layout.problems
         if self.index >= len(found):
@@ -179,7 +179,7 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if context.mode != "OBJECT" and not (context.mode == "EDIT_MESH" and context.object.type == "MESH"):
+        if context.mode != "OBJECT" and not (context.mode == "EDIT_MESH" and objects.active(context).type == "MESH"):
             cls.poll_message_set("Works in Object Mode and in Edit Mode")
             return False
         return True
@@ -188,7 +188,7 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
         self.layout.prop(self, "cubes")
 
     def prepare(self, context):
-        surface = properties.surface_of(context.object, context.scene)
+        surface = properties.surface_of(objects.active(context), context.scene)
         nodes = None
         if surface.mode == "EDIT":
             nodes = _boundary_nodes(surface)
@@ -210,13 +210,13 @@ _sources = []  # Blender keeps no reference to the texts of items that a functio
 
 def _source_items(operator, context):
     """The operations of the active object's hierarchy whose layout can be copied."""
-    surface = properties.surface_of(context.object, context.scene) if context is not None else None
-    hierarchy = hierarchy_properties.hierarchy_of(surface if properties.is_level(surface) else context.object) if context is not None else None
+    surface = properties.surface_of(objects.active(context), context.scene) if context is not None else None
+    hierarchy = hierarchy_properties.hierarchy_of(surface if properties.is_level(surface) else objects.active(context)) if context is not None else None
     found = hierarchy_properties.operations_of(hierarchy) if hierarchy is not None else []
+    choices = [(number, one) for number, one in enumerate(found) if one["corners"]]
     _sources[:] = [
-        (str(number), f"Level {one['level']}: {len(one['quads'])} quads to {len(one['new_quads'])}, {one['corners']} sides", "Copy the layout of this operation", number)
-        for number, one in enumerate(found)
-        if one["corners"]
+        (str(number), f"Level {one['level']}: {len(one['quads'])} quads to {len(one['new_quads'])}, {one['corners']} sides", "Copy the layout of this operation", place)
+        for place, (number, one) in enumerate(choices)
     ] or [("NONE", "None", "The hierarchy has no operation whose layout can be copied", 0)]
     return _sources
 
@@ -235,7 +235,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     @classmethod
     def poll(cls, context):
-        if not properties.is_level(properties.surface_of(context.object, context.scene)):
+        if not properties.is_level(properties.surface_of(objects.active(context), context.scene)):
             cls.poll_message_set("Make a level of a hierarchy, or the layout drawn on it, the active object")
             return False
         return True
@@ -247,7 +247,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     def prepare(self, context):
         self._drawn = None
-        level = properties.surface_of(context.object, context.scene)
+        level = properties.surface_of(objects.active(context), context.scene)
         hierarchy = level.hybrid_mesh.hierarchy
         source = hierarchy.hybrid_mesh.source
         if source is None or not objects.in_scene(source, context.scene):
@@ -298,7 +298,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
 def _read(context, collect=None):
     """The meshes.Source and the drawing.Drawn of the mesh object that the active object stands for; raises ValueError. collect: as in meshes.read_source()."""
-    surface = properties.surface_of(context.object, context.scene)
+    surface = properties.surface_of(objects.active(context), context.scene)
     try:
         with objects.evaluated(context, surface) as graph:
             return meshes.read_source(surface, graph, collect), drawing.read_drawn(context, surface)
@@ -463,12 +463,12 @@ def _settings_of(hierarchy, scene):
 
 
 def _to_object_mode(context):
-    if context.object is not None and context.mode != "OBJECT":
+    if objects.active(context) is not None and context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def _select_only(context, obj):
-    for other in context.selected_objects:
+    for other in list(context.view_layer.objects.selected):
         other.select_set(False)
     obj.select_set(True)
     context.view_layer.objects.active = obj

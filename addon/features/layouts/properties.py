@@ -95,7 +95,7 @@ def layout_of(surface, scene, kind="DRAWN"):
 
 def drawn_on(surface, context):
     """The layout that is drawn in on a mesh object: the active object, or the first one that there is, or None."""
-    active = context.object
+    active = objects.active(context)
     if active is not None and _kind(active) == "DRAWN" and active.hybrid_mesh_layout.surface == surface:
         return active
     return layout_of(surface, context.scene)

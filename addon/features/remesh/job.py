@@ -77,7 +77,7 @@ def build_hierarchy(context, obj, result, source, settings):
 
 
 def _select(context, objects):
-    for obj in context.selected_objects:
+    for obj in list(context.view_layer.objects.selected):
         obj.select_set(False)
     for obj in objects:
         obj.select_set(True)
