@@ -185,6 +185,17 @@ def test_quads_that_were_replaced_are_no_region(world, region):
     refused(bpy.ops.hybrid_mesh.repatch_region, "2 of the selected faces of scan.M1 .* select faces of scan.N1", layout_kind="AUTOMATIC")
 
 
+@pytest.mark.parametrize("vertices, fewer", [(1600, True), (2000, False)])
+def test_a_region_that_costs_a_level_says_so(world, capfd, vertices, fewer):
+    _, levels, _ = from_layout(world, world.scan(), vertices)
+    levels[1].hide_set(False)
+    select_faces(world, levels[1], {0})
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    made = [obj for obj in bpy.context.object.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.level.startswith("N")]
+    assert len(made) == len(levels) - fewer
+    assert ("the bound of 1,600 vertices leaves one level less" in capfd.readouterr().out) == fewer
+
+
 def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
     bad = region.line()
     bad[1] = numpy.nan

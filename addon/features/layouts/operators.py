@@ -284,10 +284,16 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
                 drawing.forget_problems(context, level, layout)
             drawing.hide(context, level)
         hierarchy = bpy.data.collections.get(self._hierarchy)
-        for obj in hierarchy.objects if hierarchy is not None else ():
+        if hierarchy is None:
+            return
+        for obj in hierarchy.objects:
             # What was made before would cover what is new.
             if objects.in_view_layer(obj, context.view_layer):
                 obj.hide_set(True)
+        _, settings = results[0][0].note
+        lost = _finest(hierarchy) - _finest(objects.active(context).hybrid_mesh.hierarchy)
+        if lost > 0 and settings.vertices:
+            self.report({"WARNING"}, f"With the new quads the bound of {settings.vertices:,} vertices leaves {'one level' if lost == 1 else f'{lost} levels'} less")
 
     def failed(self, context, task, error):
         _show_failure(context, self._level, self._drawn, error)
@@ -402,6 +408,10 @@ def _refuse_replaced(level, hierarchy, quads):
     replaced = sum(quad not in there for quad in quads)
     if replaced:
         raise ValueError(f"{replaced} of the selected faces of {level.name} {'has' if replaced == 1 else 'have'} been laid out anew already; select faces of {after.name}")
+
+
+def _finest(hierarchy):
+    return max(map(_level_number, _levels(hierarchy)), default=0)
 
 
 def _levels(hierarchy):
