@@ -70,7 +70,7 @@ class NativeJobOperator(bpy.types.Operator):
             return {"CANCELLED"}
         if event.type == "ESC" and event.value == "PRESS":
             self._leave(context)
-            run.cancel()
+            _let_end(run)
             self.report({"INFO"}, "Cancelled; nothing was changed")
             return {"CANCELLED"}
         if event.type == "TIMER":
@@ -129,6 +129,24 @@ class NativeJobOperator(bpy.types.Operator):
 
 
 _runs = set()
+_ending = []  # cancelled ones whose native work has not yet looked up
+
+
+def _let_end(run):
+    """Cancels a run without waiting for its thread, which on a large surface may be at something that takes seconds."""
+    run.cancel(wait=False)
+    _ending.append(run)
+    if not bpy.app.timers.is_registered(_let_go):
+        bpy.app.timers.register(_let_go, first_interval=POLL_SECONDS)
+
+
+def _let_go():
+    """A timer: drops the runs that have ended."""
+    for run in list(_ending):
+        run.step()
+        if run.done:
+            _ending.remove(run)
+    return POLL_SECONDS if _ending else None
 
 
 def running():
@@ -138,9 +156,10 @@ def running():
 
 def end_all():
     """Cancels and joins every job. Nothing native runs when this returns, whatever it was doing."""
-    for run in list(_runs):
+    for run in [*_runs, *_ending]:
         run.cancel()
     _runs.clear()
+    _ending.clear()
     try:
         native().shutdown_jobs()
     except NativeMissing:
@@ -159,6 +178,8 @@ def register():
 
 def unregister():
     end_all()
+    if bpy.app.timers.is_registered(_let_go):
+        bpy.app.timers.unregister(_let_go)
     atexit.unregister(end_all)
     if _before_load in bpy.app.handlers.load_pre:
         bpy.app.handlers.load_pre.remove(_before_load)

@@ -11,6 +11,7 @@ import numpy
 
 from .. import compat
 from .arrays import MeshArrays, mirrors, reversed_corners, transformed, world_matrix
+from .objects import key_of
 
 STRETCH, STRETCH_COLOR, ANISOTROPY, PATCH, IRREGULAR, PATCH_UV = "stretch", "stretch_color", "anisotropy", "patch", "irregular", "patches"
 ROOT, PATH = "root", "path"  # the address of a face's quad: its root quad's number, and 1 followed by the children in base 4
@@ -24,6 +25,7 @@ class SourceError(ValueError):
 class Source:
     """What was read of an object: its evaluated surface as triangles in world space, and how to put a result back."""
 
+    key: tuple  # objects.key_of() the object
     mesh: MeshArrays
     matrix: numpy.ndarray  # object to world
     triangle_polygons: numpy.ndarray  # the polygon of each triangle
@@ -60,7 +62,7 @@ def read_source(obj, depsgraph, collect=None):
     if not numpy.isfinite(points).all():
         raise SourceError("it has vertices at places that are not finite")
     offsets = numpy.arange(0, 3 * len(loops) + 1, 3, dtype=numpy.int64)
-    return Source(MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, carried)
+    return Source(key_of(obj), MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, carried)
 
 
 def new_mesh(name, made, matrix):

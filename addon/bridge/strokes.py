@@ -79,6 +79,16 @@ def has_frame(layer, frame):
     return _frame_at(layer, frame) is not None
 
 
+def is_hidden(layer):
+    """Hidden itself or in a group that is."""
+    return _any_above(layer, "hide")
+
+
+def is_locked(layer):
+    """Locked itself or in a group that is."""
+    return _any_above(layer, "lock")
+
+
 def layer_matrix(obj, layer):
     """From a layer's space to the world."""
     if hasattr(layer, "matrix_local"):
@@ -102,7 +112,7 @@ def read(obj, frame):
     """
     strokes = []
     for layer in obj.data.layers:
-        shown = None if _hidden(layer) else _frame_at(layer, frame)
+        shown = None if is_hidden(layer) else _frame_at(layer, frame)
         if shown is None:
             continue
         name, matrix = _layer_name(layer), layer_matrix(obj, layer)
@@ -154,10 +164,9 @@ def _layer_name(layer):
     return layer.info if hasattr(layer, "info") else layer.name
 
 
-def _hidden(layer):
-    """Hidden itself or in a group that is."""
+def _any_above(layer, name):
     while layer is not None:
-        if layer.hide:
+        if getattr(layer, name):
             return True
         layer = getattr(layer, "parent_group", None)
     return False
@@ -204,7 +213,7 @@ def _drawing_lines(drawing, layer_name):
         elif kind == _BEZIER and has_handles:
             line = bezier(points[part], left[part], right[part], is_cyclic, resolution)
         elif kind == _NURBS:
-            raise StrokeError(f"stroke {number} of the layer {layer_name} is a NURBS curve; convert it to another curve type")
+            raise StrokeError(f"stroke {number + 1} of the layer {layer_name} is a NURBS curve; convert it to another curve type")
         else:  # Bezier curves without handles are shown as polylines, too.
             line = closed(points[part], is_cyclic)
         yield line, int(slots[number])

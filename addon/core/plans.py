@@ -129,7 +129,11 @@ def boundary_plan(nodes=None, cubes=0):
 def parse(text):
     """A plan's text as a dict; raises PlanError where it is no plan that this version can read."""
     try:
-        plan = json.loads(text)
+        plan = json.loads(text.removeprefix("\ufeff"), parse_constant=_refuse_constant)
+    except RecursionError as error:
+        raise PlanError("the plan is nested too deeply") from error
+    except PlanError:
+        raise
     except ValueError as error:
         raise PlanError(f"the plan is not JSON ({error})") from error
     if not isinstance(plan, dict) or plan.get("format") != FORMAT:
@@ -149,6 +153,11 @@ def with_operation(plan_text, operation):
     """The plan with an operation after those that it has, as text."""
     plan = parse(plan_text)
     return to_text({**plan, "operations": [*plan.get("operations", []), operation]})
+
+
+def _refuse_constant(word):
+    # Python would read it, and nobody else what it then writes.
+    raise PlanError(f"the plan has the number {word}, which JSON has not")
 
 
 def _whole(name, value, least, most):

@@ -38,7 +38,7 @@ class Processes:
             timer.daemon = True
             timer.start()
         errors = []
-        drain = threading.Thread(target=lambda: errors.extend(process.stderr), daemon=True)
+        drain = threading.Thread(target=_read_all, args=(process.stderr, errors), daemon=True)
         drain.start()
         answer = None
         try:
@@ -48,7 +48,7 @@ class Processes:
             except OSError:
                 pass  # The child is gone; how it ended says why.
             for line in process.stdout:
-                if line.startswith(RESULT_MARK):
+                if line.startswith(RESULT_MARK) and line.endswith("\n"):  # One that is cut off is no answer.
                     answer = json.loads(line[len(RESULT_MARK) :])
             code = process.wait()
             drain.join(5)
@@ -82,10 +82,13 @@ class Processes:
             if self._ended:
                 raise WorkerFailed("cancelled")
             # A session of its own: Ctrl-C reaches this process only, which then ends the children.
-            process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
-                start_new_session=os.name == "posix", env=_environment(),
-            )  # fmt: skip
+            try:
+                process = subprocess.Popen(
+                    command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", errors="replace",
+                    start_new_session=os.name == "posix", env=_environment(),
+                )  # fmt: skip
+            except OSError as error:
+                raise WorkerFailed(f"no process for it could be started ({error.strerror})") from error
             self._running.add(process)
             return process
 
@@ -100,6 +103,11 @@ class Processes:
                 stream.close()
             except OSError:
                 pass
+
+
+def _read_all(stream, lines):
+    with stream:
+        lines.extend(stream)
 
 
 def in_blender():

@@ -73,6 +73,7 @@ class TaskRun:
         self.failures = []  # (task, exception)
         self._job = None
         self._next = 0
+        self._cancelled = False
 
     @property
     def errors(self):
@@ -100,7 +101,8 @@ class TaskRun:
         if self._job is not None:
             if not self._job.done:
                 return
-            self._take(self._job)
+            if not self._cancelled:
+                self._take(self._job)
             self._job = None
         if self._next < len(self.tasks):
             task = self.tasks[self._next]
@@ -122,12 +124,15 @@ class TaskRun:
             self.cancel()
             raise
 
-    def cancel(self):
+    def cancel(self, wait=True):
+        """Ends everything; there is no result of what is being done. Without waiting, native work may go on until it looks up: step() until all is done."""
+        self._cancelled = True
+        self._next = len(self.tasks)
         if self._job is not None:
             self._job.cancel()
-            self._job.wait()
-            self._job = None
-        self._next = len(self.tasks)
+            if wait:
+                self._job.wait()
+                self._job = None
 
     def _take(self, job):
         task = self.tasks[self._next - 1]

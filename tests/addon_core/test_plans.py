@@ -119,6 +119,16 @@ def test_what_is_no_plan(text):
         plans.with_operation(text, operation())
 
 
+@pytest.mark.parametrize("text, words", [(PLAN.replace("[]", "[NaN]"), "NaN"), (PLAN.replace("[]", "[-Infinity]"), "-Infinity"), ("[" * 100000, "nested")])
+def test_what_python_alone_would_read_is_no_plan(text, words):
+    with pytest.raises(plans.PlanError, match=words):
+        plans.with_operation(text, operation())
+
+
+def test_a_mark_that_some_editors_write_is_no_part_of_a_plan():
+    assert plans.parse("\ufeff" + PLAN) == plans.parse(PLAN)
+
+
 def test_a_base_on_a_boundary():
     assert json.loads(plans.boundary_plan())["base"] == {"boundary_nodes": "automatic", "cubes": 0}
     nodes = numpy.eye(4)[:, :3]

@@ -56,6 +56,32 @@ def test_cancel_ends_soon_and_starts_nothing_more(monkeypatch):
     assert time.monotonic() - began < 0.5 and run.done and not run.results
 
 
+def test_a_cancel_need_not_wait_for_work_that_does_not_look_up():
+    class Deaf:
+        """Native work that goes on for a while after it was cancelled."""
+
+        progress, stage, done, cancelled = 0.5, "", False, False
+
+        def cancel(self):
+            self.cancelled = True
+
+        def wait(self, timeout_s=None):
+            pytest.fail("it is waited for")
+
+        def result(self):
+            pytest.fail("it is asked for a result")
+
+    job = Deaf()
+    run = TaskRun([Task("a", lambda: job), Task("b", lambda: pytest.fail("it starts another one"))])
+    run.step()
+    run.cancel(wait=False)
+    run.step()
+    assert job.cancelled and not run.done
+    job.done = True
+    run.step()
+    assert run.done and not run.results and not run.failures
+
+
 def test_an_interrupted_wait_cancels(monkeypatch):
     monkeypatch.setenv("HYBRID_MESH_FAKE_SECONDS", "60")
     run = TaskRun([task("a")])

@@ -70,7 +70,7 @@ def press(key):
     window.event_simulate(type=key, value="RELEASE", **where)
 
 
-def wait_until(condition, limit=60.0):
+def wait_until(condition, limit=200.0):
     """Yields until the condition holds; fails after `limit` seconds. Use with `yield from`; returns the seconds that it took."""
     began = time.monotonic()
     while not condition():
@@ -79,12 +79,38 @@ def wait_until(condition, limit=60.0):
     return time.monotonic() - began
 
 
+def cancel_by_escape(start, unchanged, delays):
+    """Starts a job and presses Esc some seconds later, once for each delay. Use with `yield from`.
+
+    start(): runs the operator, in the context of the 3D view; unchanged(): asserts that nothing is left of it.
+    """
+    from hybrid_mesh import jobs
+
+    for delay in delays:
+        with bpy.context.temp_override(**view()):
+            assert start() == {"RUNNING_MODAL"}
+        yield delay
+        assert jobs.running(), "it was done before Esc could be pressed"
+        press("ESC")
+        seconds = yield from wait_until(lambda: not jobs.running(), 10)
+        print(f"Esc after {delay} s: ended in {seconds:.2f} s")
+        yield 0.2
+        unchanged()
+        yield 1
+
+
 def screenshot(name):
     """Kept for people where HYBRID_MESH_SCREENSHOTS names a folder."""
     folder = os.environ.get("HYBRID_MESH_SCREENSHOTS")
     if folder:
         with bpy.context.temp_override(**view()):
             bpy.ops.screen.screenshot(filepath=os.path.join(folder, name + ".png"))
+
+
+def empty_scene():
+    with bpy.context.temp_override(**view()):
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.ops.object.delete()
 
 
 def large_sphere(rings=160):

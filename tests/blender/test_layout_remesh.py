@@ -8,7 +8,8 @@ import numpy
 import pytest
 
 from conftest import module
-from test_layouts import broken_cube, cube_lines, draw, layout_of, read, state, strokes, vector
+from cube import cube_lines
+from test_layouts import broken_cube, draw, layout_of, read, state, strokes, vector
 
 
 def plan_of(obj):
@@ -172,6 +173,36 @@ def test_problems_of_a_region_are_marked(world, region):
     assert len(layout.hybrid_mesh_layout.problems) and layout_of(region.level, "PROBLEMS") is not None
 
 
+def test_quads_that_were_replaced_are_no_region(world, region):
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    before = level_of(bpy.context.object, "M1")  # the level without the operation
+    before.hide_set(False)
+    found = [address(before, face) for face in range(len(before.data.polygons))]
+    replaced = {found.index(one) for one in region.addresses}
+    select_faces(world, before, {*replaced, next(face for face in range(len(found)) if face not in replaced)})
+    refused(bpy.ops.hybrid_mesh.repatch_region, "2 of the selected faces of scan.M1 .* select faces of scan.N1", layout_kind="AUTOMATIC")
+
+
+@pytest.mark.parametrize("vertices, fewer", [(1600, True), (2000, False)])
+def test_a_region_that_costs_a_level_says_so(world, capfd, vertices, fewer):
+    _, levels, _ = from_layout(world, world.scan(), vertices)
+    levels[1].hide_set(False)
+    select_faces(world, levels[1], {0})
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    made = [obj for obj in bpy.context.object.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.level.startswith("N")]
+    assert len(made) == len(levels) - fewer
+    assert ("the bound of 1,600 vertices leaves one level less" in capfd.readouterr().out) == fewer
+
+
+def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
+    bad = region.line()
+    bad[1] = numpy.nan
+    region.draw([region.line(), bad])
+    refused(bpy.ops.hybrid_mesh.repatch_region, "scan.N1.layout: .*not finite .stroke 2 of Layout.")
+
+
 def test_what_is_no_region(world, region):
     refused(bpy.ops.hybrid_mesh.repatch_region, "no layout")
     region.draw([region.line()])
@@ -255,7 +286,10 @@ def test_a_layout_is_copied_to_another_region(world, place):
     select_faces(world, level, {far})
     refused(bpy.ops.hybrid_mesh.repatch_region, "has 4 sides.*6", layout_kind="COPY", source="0")
     select_faces(world, level, pair)
-    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="COPY", source="0") == {"FINISHED"}
+    hierarchy = level.hybrid_mesh.hierarchy.hybrid_mesh
+    # An operation whose quads are no disk cannot be copied; the first one that can be is what is copied where nothing is said.
+    hierarchy.operations = json.dumps([{**json.loads(hierarchy.operations)[0], "corners": 0}, *json.loads(hierarchy.operations)])
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="COPY") == {"FINISHED"}
     made = operations(bpy.context.object)
     assert len(made) == 2 and made[0]["new_quads"] == made[1]["new_quads"] and made[0]["quads"] != made[1]["quads"]
     # The removed quads lie in their layout in the same way.

@@ -8,9 +8,8 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from conftest import module
+from cube import cube_lines, on_surface
 
-CORNERS = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-EDGES = [(a, b) for i, a in enumerate(CORNERS) for b in CORNERS[i + 1 :] if sum(abs(p - q) for p, q in zip(a, b)) == 2]
 PLACES = [
     {},
     {"location": (5, -2, 1), "rotation_euler": (0.4, -1.2, 2.5)},
@@ -53,22 +52,6 @@ def parented(world, obj):
     obj.parent = parent
     bpy.context.view_layer.update()
     return obj
-
-
-def on_surface(obj, directions):
-    """World-space points of an object's surface, in directions of its own space from its middle."""
-    found = []
-    for direction in directions:
-        hit, place, _, _ = obj.ray_cast((0, 0, 0), tuple(float(value) for value in direction))
-        assert hit
-        found.append(obj.matrix_world @ place)
-    return numpy.array(found)
-
-
-def cube_lines(obj, count=9):
-    """The twelve edges of a cube, as seen from the middle of a ball-like object, as lines on its surface."""
-    t = numpy.linspace(0, 1, count)[:, None]
-    return [on_surface(obj, numpy.array(a) + t * (numpy.array(b) - numpy.array(a))) for a, b in EDGES]
 
 
 def broken_cube(obj):
@@ -217,7 +200,7 @@ def test_curves_are_sampled_and_stay_curves(world):
     assert abs(half[-1] - ring[4]).max() < 1e-6 and abs(polygon - ring).max() < 1e-6
     assert [stroke.curve_type for stroke in drawing_of.strokes] == [0, 2, 1] and len(drawing_of.strokes[0].points) == 8
     drawing_of.set_types(type="NURBS", indices=(2,))
-    with pytest.raises(strokes().StrokeError, match="NURBS"):
+    with pytest.raises(strokes().StrokeError, match="stroke 3 of the layer one is a NURBS"):
         strokes().read(obj, 1)
 
 
@@ -326,6 +309,117 @@ def test_the_ink_says_how_a_stroke_is_fitted(world):
     other = world.scan("other")
     draw(other, [])
     assert [slot.material for slot in layout_of(other).material_slots] == [slot.material for slot in layout.material_slots]
+
+
+def test_hidden_and_locked_layers_are_not_drawn_in(world):
+    scan = world.scan()
+    layout = draw(scan, [])
+    first = layout.data.layers.active
+    second = strokes().add_layer(layout, "second", 1)
+    for hidden, locked, expected in ((first, second, 3), (first, None, 3)):
+        hidden.hide = True
+        if locked is not None:
+            locked.lock = True
+        world.select(scan)
+        bpy.ops.hybrid_mesh.draw_layout()
+        active = layout.data.layers.active
+        assert not active.hide and not active.lock and len(layout.data.layers) == expected
+
+
+def test_inks_that_were_removed_come_back(world):
+    scan = world.scan()
+    layout = draw(scan, [])
+    inks = [slot.material for slot in layout.material_slots]
+    layout.data.materials.pop(index=1)
+    bpy.ops.hybrid_mesh.draw_layout()
+    assert [slot.material for slot in layout.material_slots] == inks
+
+
+def reloaded(tmp_path, names, kind):
+    """Saves the file, starts an empty one and links what has these names."""
+    path = str(tmp_path / "library.blend")
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return linked(path, names, kind)
+
+
+def linked(path, names, kind):
+    with bpy.data.libraries.load(path, link=True) as (_, chosen):
+        setattr(chosen, kind, list(names))
+    found = list(getattr(chosen, kind))
+    for one in found:
+        getattr(bpy.context.scene.collection, {"objects": "objects", "collections": "children"}[kind]).link(one)
+    bpy.context.view_layer.update()
+    return found
+
+
+@pytest.mark.parametrize("override", [False, True])
+def test_a_scan_in_a_collection_of_a_library(world, tmp_path, override):
+    scan = world.scan()
+    collection = bpy.data.collections.new("scans")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(scan)
+    bpy.context.scene.collection.objects.unlink(scan)
+    (collection,) = reloaded(tmp_path, ["scans"], "collections")
+    if override:
+        collection = collection.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
+        bpy.context.view_layer.update()
+    scan = collection.objects[0]
+    draw(scan, cube_lines(scan))
+    check()
+    assert layout_of(scan).hybrid_mesh_layout.summary == "8 nodes, 12 curves, 6 faces" and layout_of(scan).visible_get()
+
+
+def test_a_layout_from_a_library_is_checked_and_not_drawn_in(world, tmp_path):
+    scan = world.scan()
+    draw(scan, cube_lines(scan))
+    scan, layout = reloaded(tmp_path, ["scan", "scan.layout"], "objects")
+    world.select(scan)
+    objects = set(bpy.data.objects)
+    with pytest.raises(RuntimeError, match="scan.layout comes from a library"):
+        bpy.ops.hybrid_mesh.draw_layout()
+    assert bpy.context.mode == "OBJECT" and bpy.context.object == scan and set(bpy.data.objects) == objects
+    check()
+    assert layout.hybrid_mesh_layout.summary == "8 nodes, 12 curves, 6 faces"
+
+
+def test_a_scan_of_a_library_with_the_name_of_another(world, tmp_path):
+    world.scan(scale=(2, 2, 2))
+    reloaded(tmp_path, [], "objects")
+    local = world.scan()
+    (other,) = linked(str(tmp_path / "library.blend"), ["scan"], "objects")
+    assert local.name == other.name
+    for one in (local, other):
+        world.select(one)
+        draw(one, cube_lines(one))
+        check()
+        assert layout_of(one).hybrid_mesh_layout.summary == "8 nodes, 12 curves, 6 faces"
+        assert max(distance(world, one, line) for line in read(layout_of(one, "CURVES"))) < 0.05
+        bpy.ops.object.mode_set(mode="OBJECT")
+    world.select(local, other)
+    assert bpy.ops.hybrid_mesh.remesh(vertices=500) == {"FINISHED"}
+    for one in (local, other):
+        _, levels, _ = world.hierarchy(one)
+        assert world.distance(one, levels[-1])["hausdorff"] < 0.1
+
+
+@pytest.mark.parametrize("active", [0, 1])
+def test_the_active_one_of_two_layouts_is_used(world, active):
+    scan = world.scan()
+    layouts = [draw(scan, broken_cube(scan))]
+    bpy.ops.object.mode_set(mode="OBJECT")
+    layouts.append(layouts[0].copy())
+    layouts[1].data = layouts[0].data.copy()
+    bpy.context.scene.collection.objects.link(layouts[1])
+    strokes().remove_layers(layouts[1])
+    strokes().write(layouts[1], strokes().add_layer(layouts[1], "again", 1), 1, cube_lines(scan))
+    world.select(layouts[active])
+    check()
+    assert [bool(layout.hybrid_mesh_layout.summary) for layout in layouts] == [active == 0, active == 1]
+    assert bool(len(layouts[active].hybrid_mesh_layout.problems)) == (active == 0)
+    assert bpy.ops.hybrid_mesh.draw_layout() == {"FINISHED"} and bpy.context.object == layouts[active]
 
 
 # --- checking ----------------------------------------------------------------------------------------------------------------------
@@ -437,6 +531,129 @@ def test_nothing_to_check(world):
     scan.data.clear_geometry()
     with pytest.raises(RuntimeError, match="no faces"):
         bpy.ops.hybrid_mesh.check_layout()
+
+
+def test_a_check_is_done_when_it_returns_where_there_is_no_window(world):
+    scan = world.scan()
+    draw(scan, broken_cube(scan))
+    assert bpy.app.background and bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT") == {"FINISHED"}
+    assert not module("jobs").running() and layout_of(scan, "CURVES") is not None and len(layout_of(scan).hybrid_mesh_layout.problems)
+
+
+def test_a_check_that_fails_changes_nothing(world, monkeypatch):
+    scan = world.scan()
+    layout = draw(scan, broken_cube(scan))
+    check()
+    problems = [(problem.kind, problem.message) for problem in layout.hybrid_mesh_layout.problems]
+    before = {obj: read(obj) for obj in bpy.data.objects if strokes().is_grease_pencil(obj)}, problems, layout.hybrid_mesh_layout.summary, bpy.context.mode
+
+    def refuse(*_):
+        raise world.native().InvalidInput("not this one")
+
+    monkeypatch.setattr(world.native(), "start_layout_plan", refuse)
+    with pytest.raises(RuntimeError, match="scan: not this one"):
+        bpy.ops.hybrid_mesh.check_layout()
+    after = [(problem.kind, problem.message) for problem in layout.hybrid_mesh_layout.problems]
+    assert after == before[1] and layout.hybrid_mesh_layout.summary == before[2] and bpy.context.mode == before[3]
+    assert all(all(map(numpy.array_equal, read(obj), lines)) for obj, lines in before[0].items()) and len(bpy.data.objects) == 1 + len(before[0])
+
+
+def meanwhile(world, monkeypatch, change):
+    """Has something change after the work of a layout has begun."""
+    start = world.native().start_layout_plan
+
+    def start_and_change(*given):
+        job = start(*given)
+        change()
+        return job
+
+    monkeypatch.setattr(world.native(), "start_layout_plan", start_and_change)
+
+
+@pytest.mark.parametrize("operator", ["check_layout", "remesh_layout"])
+def test_problems_are_of_the_strokes_that_were_read(world, monkeypatch, operator):
+    scan = world.scan()
+    layout = draw(scan, [*cube_lines(scan), cube_lines(scan)[0] + 50])
+    meanwhile(world, monkeypatch, lambda: strokes().remove_layers(layout))
+    if operator == "check_layout":
+        check()
+    else:
+        with pytest.raises(RuntimeError, match="marked in red"):
+            bpy.ops.hybrid_mesh.remesh_layout()
+    assert [(problem.kind, problem.layer, problem.number) for problem in layout.hybrid_mesh_layout.problems] == [("off_surface", "Layout", 12)]
+
+
+@pytest.mark.parametrize("kind", [None, "DRAWN"])
+def test_what_is_checked_may_go(world, monkeypatch, kind):
+    scan = world.scan()
+    draw(scan, broken_cube(scan))
+    gone = layout_of(scan) if kind else scan
+    meanwhile(world, monkeypatch, lambda: bpy.data.objects.remove(gone))
+    with pytest.raises(RuntimeError, match="gone"):
+        bpy.ops.hybrid_mesh.check_layout()
+    assert len(bpy.data.objects) == 1
+
+
+def test_what_is_flat_is_named(world):
+    scan = world.scan()
+    layout = draw(scan, broken_cube(scan))
+    check()
+    layout.scale = (1, 1, 0)
+    bpy.context.view_layer.update()
+    for operator in (bpy.ops.hybrid_mesh.check_layout, bpy.ops.hybrid_mesh.remesh_layout):
+        with pytest.raises(RuntimeError, match="scan: scan.layout has a scale of zero"):
+            operator()
+    layout.scale, scan.scale = (1, 1, 1), (1, 0, 1)
+    bpy.context.view_layer.update()
+    for operator in (bpy.ops.hybrid_mesh.check_layout, bpy.ops.hybrid_mesh.remesh_layout):
+        with pytest.raises(RuntimeError, match="scan: its scale is zero"):
+            operator()
+    assert bpy.ops.hybrid_mesh.show_problem(index=0) == {"FINISHED"}
+
+
+def put_away(obj, how):
+    """Takes an object out of view, in one of the ways that there are."""
+    collection = bpy.data.collections.new("away")
+    bpy.context.scene.collection.children.link(collection)
+    for one in obj.users_collection:
+        one.objects.unlink(obj)
+    collection.objects.link(obj)
+    layer = bpy.context.view_layer.layer_collection.children["away"]
+    obj.hide_viewport, layer.exclude, layer.hide_viewport, collection.hide_viewport = (how == one for one in ("screen", "exclude", "layer eye", "layer screen"))
+    if how == "eye":
+        obj.hide_set(True)
+
+
+@pytest.mark.parametrize("how", ["screen", "exclude", "layer eye", "layer screen", "eye"])
+@pytest.mark.parametrize("drawn", [False, True])
+def test_modifiers_count_where_the_mesh_is_not_seen(world, tmp_path, how, drawn):
+    box = world.box()
+    box.modifiers.new("Subdivision", "SUBSURF").levels = 4
+    bpy.context.view_layer.update()
+    if drawn:
+        draw(box, cube_lines(box))
+        bpy.ops.object.mode_set(mode="OBJECT")
+    put_away(box, how)
+    path = str(tmp_path / "away.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    box = bpy.data.objects["box"]
+    away = state_of_view(box)
+    with module("bridge.objects").evaluated(bpy.context, box) as graph:
+        assert len(module("bridge.meshes").read_source(box, graph).mesh.points) == 6 * 4**4 + 2
+    assert state_of_view(box) == away
+    if drawn:
+        bpy.context.view_layer.objects.active = layout_of(box)
+        check()
+        assert layout_of(box).hybrid_mesh_layout.summary == "8 nodes, 12 curves, 6 faces"
+        bpy.context.scene.hybrid_mesh.vertices, bpy.context.scene.hybrid_mesh.hide_source = 500, True
+        assert bpy.ops.hybrid_mesh.remesh_layout() == {"FINISHED"}
+        assert bpy.context.object.visible_get() and not box.visible_get()
+
+
+def state_of_view(obj):
+    view_layer = bpy.context.view_layer
+    return obj.visible_get(), obj.hide_viewport, obj.name in view_layer.objects and obj.hide_get(), [one.name for one in obj.users_collection]
 
 
 def test_modifiers_and_quads_count(world):

@@ -11,6 +11,7 @@ from mathutils.bvhtree import BVHTree
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import stepper  # noqa: E402
+from hybrid_mesh import jobs  # noqa: E402
 from hybrid_mesh.bridge import meshes, strokes  # noqa: E402
 from hybrid_mesh.features.layouts import panel, properties  # noqa: E402
 
@@ -18,9 +19,8 @@ from hybrid_mesh.features.layouts import panel, properties  # noqa: E402
 def steps():
     show_panel()
     view = stepper.view()
+    stepper.empty_scene()
     with bpy.context.temp_override(**view):
-        bpy.ops.object.select_all(action="SELECT")
-        bpy.ops.object.delete()
         scan = stepper.large_sphere(30)
         scan.rotation_euler, scan.scale, scan.location = (0.5, 0.3, 1.1), (1.6, 0.8, 1.1), (1, 0.5, -0.3)
         bpy.ops.view3d.view_selected()
@@ -36,7 +36,9 @@ def steps():
     tree, size = surface(scan)
     print(f"drawn at most {farthest(tree, drawn) / size:.1e} of the diagonal off the surface")
     with bpy.context.temp_override(**stepper.view()):
-        assert bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True) == {"FINISHED"}
+        assert bpy.ops.hybrid_mesh.check_layout("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield from stepper.wait_until(lambda: not jobs.running())
+    yield 0.3
     curves = strokes.read(properties.layout_of(scan, bpy.context.scene, "CURVES"), bpy.context.scene.frame_current)
     lines = [one for one in curves if one.layer == "Curves"]
     off = farthest(tree, lines) / size
@@ -66,6 +68,11 @@ def steps():
     layout = properties.layout_of(scan, bpy.context.scene)
     assert properties.layout_of(scan, bpy.context.scene, "CURVES") is None and not layout.hybrid_mesh_layout.problems
     assert len(strokes.read(layout, bpy.context.scene.frame_current)) == 2
+    # Without a window, as a script may be, a check is done when it returns.
+    with bpy.context.temp_override(window=None, screen=None, area=None, region=None):
+        assert bpy.ops.hybrid_mesh.check_layout() == {"FINISHED"}
+        assert bpy.ops.hybrid_mesh.show_problem(index=0) == {"FINISHED"}
+    assert [problem.kind for problem in layout.hybrid_mesh_layout.problems].count("dangling") == 4
 
 
 def show_panel():

@@ -25,9 +25,8 @@ def steps():
         bpy.utils.register_class(cls)
     view["space_data"].show_region_ui = True
     bpy.context.preferences.view.ui_scale = 0.8
+    stepper.empty_scene()
     with bpy.context.temp_override(**view):
-        bpy.ops.object.select_all(action="SELECT")
-        bpy.ops.object.delete()
         stepper.large_sphere(40)
     yield 0.5
     stepper.screenshot("panel_before")

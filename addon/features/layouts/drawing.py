@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Grease Pencil objects of layouts: the one that is drawn in, and those that show what became of it."""
 
+from dataclasses import dataclass, replace
+
 import bpy
 import numpy
 
 from ... import compat
-from ...bridge import strokes
+from ...bridge import arrays, objects, strokes
 from ...bridge.names import with_suffix
 from . import properties
 
@@ -19,6 +21,7 @@ _INKS = {
     "node": ("Layout Nodes", (0.02, 0.02, 0.02, 1)),
     "problem": ("Layout Problems", (0.85, 0.01, 0.01, 1)),
 }
+_DRAWING_INKS = ("tight", "drawn")
 _LAYER = "Layout"
 _THINNER = -12  # pixels: brushes are made for drawings, and half of a wide stroke sinks into the surface
 # Fractions of the surface's bounding-box diagonal.
@@ -27,48 +30,59 @@ _NODE_SIZE, _MARK_SIZE = 0.006, 0.02
 
 
 class LayoutInputError(ValueError):
-    """There is nothing to make a layout of; the message says what is missing."""
+    """There is nothing to make a layout of, or to draw one in; the message says what is missing."""
+
+
+@dataclass
+class Drawn:
+    """What is drawn on a mesh object, without bpy data: those may go while a job works on it."""
+
+    layout: tuple  # objects.key_of() the layout
+    strokes: list  # of strokes.Stroke, without their materials
+    fits: list  # 'tight' or 'drawn', of each
+    snap: float
+
+    def for_native(self):
+        return [{"points": stroke.points, "fit": fit} for stroke, fit in zip(self.strokes, self.fits, strict=True)]
 
 
 def drawn_layout(context, surface):
-    """The layout of a mesh object, made if there is none, ready to be drawn in."""
-    layout = properties.layout_of(surface, context.scene)
+    """The layout of a mesh object, made if there is none, ready to be drawn in; raises LayoutInputError."""
+    layout = properties.drawn_on(surface, context)
     if layout is None:
-        layout = _new_object(context, surface, "DRAWN", ".layout", ("tight", "drawn"))
+        layout = _new_object(context, surface, "DRAWN", ".layout", _DRAWING_INKS)
+    elif not objects.is_local(layout) or not objects.is_local(layout.data):
+        raise LayoutInputError(f"{layout.name} comes from a library and cannot be drawn in; make it local, or remove it from the scene")
+    _add_inks(layout, _DRAWING_INKS)
     _show(context, layout, surface)
     frame = context.scene.frame_current
     layers = layout.data.layers
-    if not layers:
-        # From the scene's first frame on: the strokes then stay in view at all others.
-        layer = strokes.add_layer(layout, _LAYER, min(frame, context.scene.frame_start))
-        if hasattr(layer, "line_change"):
-            layer.line_change = _THINNER
-    elif layers.active is None:
-        layers.active = layers[0]
+    if layers.active is None or not _can_be_drawn_in(layers.active):
+        found = [layer for layer in layers if _can_be_drawn_in(layer)]
+        layers.active = found[-1] if found else _new_layer(context, layout)
     if not strokes.has_frame(layers.active, frame):
         layers.active.frames.new(frame)
     return layout
 
 
 def read_drawn(context, surface):
-    """(layout object, strokes.Stroke of each) of what is drawn on a mesh object; raises LayoutInputError or StrokeError."""
-    layout = properties.layout_of(surface, context.scene)
+    """What is Drawn on a mesh object; raises LayoutInputError or StrokeError."""
+    layout = properties.drawn_on(surface, context)
     if layout is None:
         raise LayoutInputError(f"{surface.name} has no layout; Draw Layout makes one")
-    found = strokes.read(layout, context.scene.frame_current)
+    try:
+        found = strokes.read(layout, context.scene.frame_current)
+    except arrays.MatrixError as error:
+        raise LayoutInputError(f"{layout.name} has a scale of zero in a direction; give it another one") from error
     if not found:
         raise LayoutInputError(f"Nothing is drawn in {layout.name} that is visible at frame {context.scene.frame_current}")
-    return layout, found
+    kept = [replace(stroke, material=None) for stroke in found]
+    return Drawn(objects.key_of(layout), kept, [fit_of(stroke) for stroke in found], layout.hybrid_mesh_layout.snap)
 
 
 def fit_of(stroke):
     """'tight' or 'drawn', as the material says that the stroke is drawn in."""
     return "drawn" if stroke.material is not None and stroke.material.get(FIT) == "drawn" else "tight"
-
-
-def for_native(drawn):
-    """What the native module takes: strokes.Stroke as dicts."""
-    return [{"points": stroke.points, "fit": fit_of(stroke)} for stroke in drawn]
 
 
 def show_curves(context, surface, result, size):
@@ -130,7 +144,7 @@ def hide(context, surface):
     """Hides the layout of a mesh object and what was made of it."""
     for kind in ("DRAWN", "CURVES", "PROBLEMS"):
         obj = properties.layout_of(surface, context.scene, kind)
-        if obj is not None and obj.name in context.view_layer.objects:
+        if obj is not None and objects.in_view_layer(obj, context.view_layer):
             obj.hide_set(True)
 
 
@@ -144,9 +158,29 @@ def _ink(key):
             return material
     material = strokes.new_ink(*_INKS[key])
     material[_INK] = key
-    if key in ("tight", "drawn"):
+    if key in _DRAWING_INKS:
         material[FIT] = key
     return material
+
+
+def _add_inks(obj, keys):
+    """Adds the inks that an object has lost."""
+    found = {slot.material.get(_INK) for slot in obj.material_slots if slot.material is not None}
+    for key in keys:
+        if key not in found:
+            obj.data.materials.append(_ink(key))
+
+
+def _can_be_drawn_in(layer):
+    return not strokes.is_hidden(layer) and not strokes.is_locked(layer)
+
+
+def _new_layer(context, layout):
+    # From the scene's first frame on: the strokes then stay in view at all others.
+    layer = strokes.add_layer(layout, _LAYER, min(context.scene.frame_current, context.scene.frame_start))
+    if hasattr(layer, "line_change"):
+        layer.line_change = _THINNER
+    return layer
 
 
 def _emptied(context, surface, kind, suffix, inks):
@@ -172,19 +206,19 @@ def _new_object(context, surface, kind, suffix, inks):
 
 
 def _show(context, obj, surface):
-    if obj.name not in context.view_layer.objects:
+    if not objects.in_view_layer(obj, context.view_layer):
         _collection(context, surface).objects.link(obj)
     obj.hide_viewport = False
     obj.hide_set(False)
-    if not obj.visible_get() and obj.name not in context.scene.collection.objects:
+    if not obj.visible_get() and obj not in context.scene.collection.objects.values():
         context.scene.collection.objects.link(obj)  # All collections that it is in are hidden.
     context.view_layer.update()
 
 
 def _collection(context, surface):
-    """Where new objects go: beside the surface, if that is in view."""
+    """Where new objects go: beside the surface, if that is in view and in a collection that takes them."""
     seen = [layer.collection for layer in _visible(context.view_layer.layer_collection)]
-    beside = [collection for collection in surface.users_collection if collection in seen]
+    beside = [collection for collection in surface.users_collection if collection in seen and objects.is_local(collection)]
     return beside[0] if beside else context.scene.collection
 
 

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import contextlib
-
 import bpy
 import mathutils
 import numpy
 from bpy.props import EnumProperty, IntProperty
 
 from ... import compat
-from ...bridge import arrays, meshes, strokes, transfer
+from ...bridge import arrays, meshes, objects, strokes, transfer
 from ...core import plans, regions
 from ...core import settings as core
-from ...core.native import NativeMissing, explain, native
+from ...core.native import native
 from ...core.tasks import Chain, Task
+from ...jobs import NativeJobOperator
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
 from ..remesh.properties import CUBES, core_settings
@@ -32,7 +31,7 @@ class _OnSurface:
 
     @classmethod
     def poll(cls, context):
-        if properties.surface_of(context.object, context.scene) is None:
+        if properties.surface_of(objects.active(context), context.scene) is None:
             cls.poll_message_set("Make a mesh object, or its layout, the active object")
             return False
         return True
@@ -45,10 +44,10 @@ class _OnLayout(_OnSurface):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if context.object.type == "MESH" and context.mode != "OBJECT":
+        if objects.active(context).type == "MESH" and context.mode != "OBJECT":
             cls.poll_message_set("Works in Object Mode, and in the modes of Grease Pencil")
             return False
-        if properties.layout_of(properties.surface_of(context.object, context.scene), context.scene) is None:
+        if properties.drawn_on(properties.surface_of(objects.active(context), context.scene), context) is None:
             cls.poll_message_set("The object has no layout; Draw Layout makes one")
             return False
         return True
@@ -62,15 +61,19 @@ class HYBRID_MESH_OT_draw_layout(_OnSurface, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
-        surface = properties.surface_of(context.object, context.scene)
+        surface = properties.surface_of(objects.active(context), context.scene)
         context.view_layer.update()
         try:
             arrays.world_matrix(surface.matrix_world)
         except arrays.MatrixError as error:
             self.report({"ERROR"}, f"{surface.name}: {error}")
             return {"CANCELLED"}
+        try:
+            layout = drawing.drawn_layout(context, surface)
+        except drawing.LayoutInputError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         _to_object_mode(context)
-        layout = drawing.drawn_layout(context, surface)
         _select_only(context, layout)
         compat.draw_on_surfaces(context.scene.tool_settings, layout.data)
         bpy.ops.object.mode_set(mode=strokes.draw_mode(layout))
@@ -79,28 +82,21 @@ class HYBRID_MESH_OT_draw_layout(_OnSurface, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class HYBRID_MESH_OT_check_layout(_OnLayout, bpy.types.Operator):
+class HYBRID_MESH_OT_check_layout(_OnLayout, NativeJobOperator):
     """Make curves on the surface of the strokes drawn, and show them and whatever keeps them from being a patch layout"""
 
     bl_idname = "hybrid_mesh.check_layout"
     bl_label = "Check Layout"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context):
-        surface = properties.surface_of(context.object, context.scene)
-        try:
-            source = meshes.read_source(surface, context.evaluated_depsgraph_get())
-            layout, drawn = drawing.read_drawn(context, surface)
-            with _waiting(context):
-                result = native().make_layout(*_triangles(source), drawing.for_native(drawn), layout.hybrid_mesh_layout.snap)
-        except (ValueError, NativeMissing) as error:
-            self.report({"ERROR"}, f"{surface.name}: {error}")
-            return {"CANCELLED"}
-        except native().Error as error:
-            self.report({"ERROR"}, f"{surface.name}: {explain(error)}")
-            return {"CANCELLED"}
-        _show_check(self, context, surface, layout, drawn, result, source)
-        return {"FINISHED"}
+    def prepare(self, context):
+        source, drawn = _read(context)
+        return [Task(source.key[0], lambda: _start(source, drawn), (source, drawn))]
+
+    def finish(self, context, results):
+        ((task, result),) = results
+        if not _show_check(self, context, *task.note, result):
+            raise ValueError(f"{task.name}: the object or its layout is gone from the scene; nothing is shown")
 
 
 class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
@@ -113,8 +109,8 @@ class HYBRID_MESH_OT_show_problem(_OnLayout, bpy.types.Operator):
     index: IntProperty(name="Problem", min=0)
 
     def execute(self, context):
-        surface = properties.surface_of(context.object, context.scene)
-        layout = properties.layout_of(surface, context.scene)
+        surface = properties.surface_of(objects.active(context), context.scene)
+        layout = properties.drawn_on(surface, context)
         found = layout.hybrid_mesh_layout.problems
         if self.index >= len(found):
             self.report({"ERROR"}, f"The layout has {_count(len(found), 'problems')}; there is no number {self.index}")
@@ -135,38 +131,36 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
     bl_label = "Remesh from Layout"
     bl_options = {"REGISTER", "UNDO"}
 
+    _drawn = None  # drawing.Drawn
+
     def prepare(self, context):
-        surface = properties.surface_of(context.object, context.scene)
         settings = core_settings(context.scene.hybrid_mesh)
-        source = meshes.read_source(surface, context.evaluated_depsgraph_get(), transfer.collect)
-        layout, drawn = drawing.read_drawn(context, surface)
-        name, given, snap = surface.name, drawing.for_native(drawn), layout.hybrid_mesh_layout.snap
+        source, drawn = _read(context, transfer.collect)
+        self._drawn = drawn
 
         def remesh(result):
             if result["problems"]:
                 raise LayoutProblemsError(result)
-            return source_task(name, source, settings, result["plan"]).start()
+            return source_task(source.key[0], source, settings, result["plan"]).start()
 
-        return [Task(name, lambda: Chain(native().start_layout_plan(*_triangles(source), given, snap), remesh), (source, settings))]
+        return [Task(source.key[0], lambda: Chain(_start(source, drawn), remesh), (source, settings))]
 
     def finish(self, context, results):
         _to_object_mode(context)
         super().finish(context, results)
-        surface = context.scene.objects[results[0][0].name]
-        layout = properties.layout_of(surface, context.scene)
+        surface = objects.find(context.scene, results[0][0].note[0].key)
+        layout = objects.find(context.scene, self._drawn.layout)
         if layout is not None:
             drawing.forget_problems(context, surface, layout)
         if self.hides_source(context):
             drawing.hide(context, surface)
 
     def failed(self, context, task, error):
-        surface = context.scene.objects.get(task.name)
-        layout = properties.layout_of(surface, context.scene) if surface is not None else None
-        if isinstance(error, LayoutProblemsError) and layout is not None:
-            _show_check(self, context, surface, layout, strokes.read(layout, context.scene.frame_current), error.result, task.note[0])
+        source = task.note[0]
+        if not isinstance(error, LayoutProblemsError):
+            _show_failure(context, source.key, self._drawn, error)
+        elif _show_check(self, context, source, self._drawn, error.result):
             _push_marks()
-        else:
-            _show_failure(context, task.name, error)
 
     def hides_source(self, context):
         return context.scene.hybrid_mesh.hide_source
@@ -185,7 +179,7 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
     def poll(cls, context):
         if not super().poll(context):
             return False
-        if context.mode != "OBJECT" and not (context.mode == "EDIT_MESH" and context.object.type == "MESH"):
+        if context.mode != "OBJECT" and not (context.mode == "EDIT_MESH" and objects.active(context).type == "MESH"):
             cls.poll_message_set("Works in Object Mode and in Edit Mode")
             return False
         return True
@@ -194,13 +188,14 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
         self.layout.prop(self, "cubes")
 
     def prepare(self, context):
-        surface = properties.surface_of(context.object, context.scene)
+        surface = properties.surface_of(objects.active(context), context.scene)
         nodes = None
         if surface.mode == "EDIT":
             nodes = _boundary_nodes(surface)
             surface.update_from_editmode()
         settings = core_settings(context.scene.hybrid_mesh)
-        return [remesh_task(surface, context.evaluated_depsgraph_get(), settings, plans.boundary_plan(nodes, self.cubes))]
+        with objects.evaluated(context, surface) as graph:
+            return [remesh_task(surface, graph, settings, plans.boundary_plan(nodes, self.cubes))]
 
     def finish(self, context, results):
         _to_object_mode(context)
@@ -215,13 +210,13 @@ _sources = []  # Blender keeps no reference to the texts of items that a functio
 
 def _source_items(operator, context):
     """The operations of the active object's hierarchy whose layout can be copied."""
-    surface = properties.surface_of(context.object, context.scene) if context is not None else None
-    hierarchy = hierarchy_properties.hierarchy_of(surface if properties.is_level(surface) else context.object) if context is not None else None
+    surface = properties.surface_of(objects.active(context), context.scene) if context is not None else None
+    hierarchy = hierarchy_properties.hierarchy_of(surface if properties.is_level(surface) else objects.active(context)) if context is not None else None
     found = hierarchy_properties.operations_of(hierarchy) if hierarchy is not None else []
+    choices = [(number, one) for number, one in enumerate(found) if one["corners"]]
     _sources[:] = [
-        (str(number), f"Level {one['level']}: {len(one['quads'])} quads to {len(one['new_quads'])}, {one['corners']} sides", "Copy the layout of this operation", number)
-        for number, one in enumerate(found)
-        if one["corners"]
+        (str(number), f"Level {one['level']}: {len(one['quads'])} quads to {len(one['new_quads'])}, {one['corners']} sides", "Copy the layout of this operation", place)
+        for place, (number, one) in enumerate(choices)
     ] or [("NONE", "None", "The hierarchy has no operation whose layout can be copied", 0)]
     return _sources
 
@@ -235,12 +230,12 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     source: EnumProperty(name="Operation", description="The operation whose layout is copied", items=_source_items)
 
-    _level = ""  # names, because the objects may go while the work runs
-    _hierarchy = ""
+    _level = _hierarchy = None  # objects.key_of() them
+    _drawn = None  # drawing.Drawn, if curves were drawn
 
     @classmethod
     def poll(cls, context):
-        if not properties.is_level(properties.surface_of(context.object, context.scene)):
+        if not properties.is_level(properties.surface_of(objects.active(context), context.scene)):
             cls.poll_message_set("Make a level of a hierarchy, or the layout drawn on it, the active object")
             return False
         return True
@@ -251,19 +246,20 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             self.layout.prop(self, "source")
 
     def prepare(self, context):
-        level = properties.surface_of(context.object, context.scene)
+        self._drawn = None
+        level = properties.surface_of(objects.active(context), context.scene)
         hierarchy = level.hybrid_mesh.hierarchy
-        graph = context.evaluated_depsgraph_get()
         source = hierarchy.hybrid_mesh.source
-        if source is None or context.scene.objects.get(source.name) != source:
+        if source is None or not objects.in_scene(source, context.scene):
             raise ValueError(f"{hierarchy.name}: the object that it was made of is gone from the scene")
         plan = hierarchy_properties.plan_of(hierarchy)
         if not plan:
             raise ValueError(f"{hierarchy.name} has no plan; remesh {source.name} again")
         addresses = _selected_quads(level, hierarchy)
         operation = plans.repatch_operation(_level_number(level), addresses, self._new_layout(context, level, hierarchy), self.buffer_rings)
-        self._level, self._hierarchy = level.name, hierarchy.name
-        return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
+        self._level, self._hierarchy = objects.key_of(level), objects.key_of(hierarchy)
+        with objects.evaluated(context, source) as graph:
+            return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
 
     def _new_layout(self, context, level, hierarchy):
         if self.layout_kind == "AUTOMATIC":
@@ -272,42 +268,53 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             return plans.cubes_layout(self.height)
         if self.layout_kind == "COPY":
             return _copied_layout(level, hierarchy, self.source, self.turn)
-        _, drawn = drawing.read_drawn(context, level)
-        return plans.drawn_layout([(stroke.points, drawing.fit_of(stroke)) for stroke in drawn])
+        self._drawn = drawn = drawing.read_drawn(context, level)
+        for stroke in drawn.strokes:
+            if not numpy.isfinite(stroke.points).all():
+                raise ValueError(f"{drawn.layout[0]}: {_named('a stroke has points that are not finite', stroke)}")
+        return plans.drawn_layout([(stroke.points, fit) for stroke, fit in zip(drawn.strokes, drawn.fits, strict=True)])
 
     def finish(self, context, results):
         _to_object_mode(context)
         super().finish(context, results)
-        level = context.scene.objects.get(self._level)
+        level = objects.find(context.scene, self._level)
         if level is not None:
-            layout = properties.layout_of(level, context.scene)
+            layout = objects.find(context.scene, self._drawn.layout) if self._drawn is not None else properties.layout_of(level, context.scene)
             if layout is not None:
                 drawing.forget_problems(context, level, layout)
             drawing.hide(context, level)
         hierarchy = bpy.data.collections.get(self._hierarchy)
-        for obj in hierarchy.objects if hierarchy is not None else ():
+        if hierarchy is None:
+            return
+        for obj in hierarchy.objects:
             # What was made before would cover what is new.
-            if obj.name in context.view_layer.objects:
+            if objects.in_view_layer(obj, context.view_layer):
                 obj.hide_set(True)
+        _, settings = results[0][0].note
+        lost = _finest(hierarchy) - _finest(objects.active(context).hybrid_mesh.hierarchy)
+        if lost > 0 and settings.vertices:
+            self.report({"WARNING"}, f"With the new quads the bound of {settings.vertices:,} vertices leaves {'one level' if lost == 1 else f'{lost} levels'} less")
 
     def failed(self, context, task, error):
-        _show_failure(context, self._level, error)
+        _show_failure(context, self._level, self._drawn, error)
 
     def hides_source(self, context):
         return False
 
 
-@contextlib.contextmanager
-def _waiting(context):
-    """A layout takes some seconds where the surface has millions of triangles."""
-    window = None if bpy.app.background else context.window
-    if window is not None:
-        window.cursor_modal_set("WAIT")
+def _read(context, collect=None):
+    """The meshes.Source and the drawing.Drawn of the mesh object that the active object stands for; raises ValueError. collect: as in meshes.read_source()."""
+    surface = properties.surface_of(objects.active(context), context.scene)
     try:
-        yield
-    finally:
-        if window is not None:
-            window.cursor_modal_restore()
+        with objects.evaluated(context, surface) as graph:
+            return meshes.read_source(surface, graph, collect), drawing.read_drawn(context, surface)
+    except ValueError as error:
+        raise ValueError(f"{surface.name}: {error}") from error
+
+
+def _start(source, drawn):
+    """A native job that makes a layout, and a plan of it where it has no problems."""
+    return native().start_layout_plan(*_triangles(source), drawn.for_native(), drawn.snap)
 
 
 def _triangles(source):
@@ -322,35 +329,36 @@ def _count(number, things):
     return f"{number} {things.removesuffix('s') if number == 1 else things}"
 
 
-def _show_check(operator, context, surface, layout, drawn, result, source):
-    """Shows what was made of the strokes, and says it."""
+def _show_check(operator, context, source, drawn, result):
+    """Shows what was made of what is drawn, and says it; returns whether there is still something to show it with."""
+    surface, layout = objects.find(context.scene, source.key), objects.find(context.scene, drawn.layout)
+    if surface is None or layout is None:
+        return False
     size = _diagonal(source.mesh.points)
     drawing.show_curves(context, surface, result, size)
-    drawing.show_problems(context, surface, layout, drawn, result["problems"], size)
+    drawing.show_problems(context, surface, layout, drawn.strokes, result["problems"], size)
     count = ", ".join(_count(len(result[things]), things) for things in ("nodes", "curves", "faces"))
     layout.hybrid_mesh_layout.summary = count
     for problem in result["problems"]:
-        operator.report({"WARNING"}, _words(problem, drawn))
+        number = problem["stroke"]
+        operator.report({"WARNING"}, _named(problem["message"], drawn.strokes[number]) if 0 <= number < len(drawn.strokes) else problem["message"])
     if not result["problems"]:
         operator.report({"INFO"}, f"{surface.name}: {count}; nothing is wrong")
+    return True
 
 
-def _words(problem, drawn):
-    stroke = problem["stroke"]
-    return f"{problem['message']} (stroke {drawn[stroke].number + 1} of {drawn[stroke].layer})" if 0 <= stroke < len(drawn) else problem["message"]
+def _named(words, stroke):
+    return f"{words} (stroke {stroke.number + 1} of {stroke.layer})"
 
 
-def _show_failure(context, name, error):
-    """Marks what the native module says of the curves of a region."""
-    if type(error).__name__ != "LayoutError" or len(error.args) < 2:
+def _show_failure(context, key, drawn, error):
+    """Marks what the native module says of the curves of a region. key: of the object that they are drawn on."""
+    surface = objects.find(context.scene, key)
+    layout = objects.find(context.scene, drawn.layout) if drawn is not None else None
+    if surface is None or layout is None or type(error).__name__ != "LayoutError" or len(error.args) < 2:
         return
-    surface = context.scene.objects.get(name)
-    layout = properties.layout_of(surface, context.scene) if surface is not None else None
-    if layout is None:
-        return
-    drawn = strokes.read(layout, context.scene.frame_current)
     points = numpy.array([surface.matrix_world @ mathutils.Vector(corner) for corner in surface.bound_box])
-    drawing.show_problems(context, surface, layout, drawn, error.args[1], _diagonal(points))
+    drawing.show_problems(context, surface, layout, drawn.strokes, error.args[1], _diagonal(points))
     _push_marks()
 
 
@@ -380,13 +388,35 @@ def _selected_quads(level, hierarchy):
     made_by_hand = int((path[chosen] < 1).sum())
     if made_by_hand:
         raise ValueError(f"{made_by_hand} of the selected faces of {level.name} were not made by a remesh; deselect them")
+    _refuse_replaced(level, hierarchy, list(zip(root[chosen].tolist(), path[chosen].tolist())))
     known = []
-    for obj in hierarchy.objects:
-        if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy:
-            roots, paths = _addresses(obj)
-            if roots is not None:
-                known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
+    for obj in _levels(hierarchy):
+        roots, paths = _addresses(obj)
+        if roots is not None:
+            known.append((_level_number(obj), roots[paths == 1].tolist(), paths[paths == 1].tolist()))
     return plans.quad_addresses(_level_number(level), root[chosen].tolist(), path[chosen].tolist(), plans.root_levels(known))
+
+
+def _refuse_replaced(level, hierarchy, quads):
+    """Raises ValueError where quads (root, path) of a level before its operations are not there after them."""
+    name = f"N{_level_number(level)}"
+    after = next((obj for obj in _levels(hierarchy) if obj.hybrid_mesh.level == name), None)
+    root, path = _addresses(after) if after is not None and after != level else (None, None)
+    if root is None:
+        return
+    there = set(zip(root.tolist(), path.tolist()))
+    replaced = sum(quad not in there for quad in quads)
+    if replaced:
+        raise ValueError(f"{replaced} of the selected faces of {level.name} {'has' if replaced == 1 else 'have'} been laid out anew already; select faces of {after.name}")
+
+
+def _finest(hierarchy):
+    return max(map(_level_number, _levels(hierarchy)), default=0)
+
+
+def _levels(hierarchy):
+    """The level objects of a hierarchy that are in its collection."""
+    return [obj for obj in hierarchy.objects if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == hierarchy]
 
 
 def _copied_layout(level, hierarchy, source, turn):
@@ -408,7 +438,7 @@ def _removed_counts(hierarchy, operation):
     """regions.corner_counts() of the quads that an operation replaced, from its layout's corner 0 on; all 0 where the level that had them is gone."""
     unknown = [0] * operation["corners"]
     name = f"M{operation['level']}"
-    before = next((obj for obj in hierarchy.objects if properties.is_level(obj) and obj.hybrid_mesh.level == name and obj.mode == "OBJECT"), None)
+    before = next((obj for obj in _levels(hierarchy) if obj.hybrid_mesh.level == name and obj.mode == "OBJECT"), None)
     root, path = _addresses(before) if before is not None else (None, None)
     if root is None:
         return unknown
@@ -443,12 +473,12 @@ def _settings_of(hierarchy, scene):
 
 
 def _to_object_mode(context):
-    if context.object is not None and context.mode != "OBJECT":
+    if objects.active(context) is not None and context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def _select_only(context, obj):
-    for other in context.selected_objects:
+    for other in list(context.view_layer.objects.selected):
         other.select_set(False)
     obj.select_set(True)
     context.view_layer.objects.active = obj
@@ -458,7 +488,7 @@ def _look_at(context, surface, place, size):
     """Turns the 3D views of the window to a place, from outside the surface."""
     if context.window is None:
         return
-    inverse = surface.matrix_world.inverted()
+    inverse = surface.matrix_world.inverted_safe()
     try:
         found, _, normal, _ = surface.evaluated_get(context.evaluated_depsgraph_get()).closest_point_on_mesh(inverse @ place)
     except RuntimeError:  # It has no faces any more.

@@ -30,7 +30,7 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
     def draw(self, context):
         layout = self.layout
         surface = properties.surface_of(context.object, context.scene)
-        drawn = properties.layout_of(surface, context.scene)
+        drawn = properties.drawn_on(surface, context)
         layout.label(text=surface.name, icon="MESH_DATA")
         layout.operator("hybrid_mesh.draw_layout", icon="GREASEPENCIL")
         if properties.is_level(surface):

@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
-from ...bridge import strokes
+from ...bridge import objects, strokes
 from ...core import plans
 from ..levels.properties import hierarchy_of
 
@@ -14,14 +14,14 @@ KINDS = (
     ("CURVES", "Curves", "What a check made of the strokes: curves and nodes on the surface"),
     ("PROBLEMS", "Problems", "Marks where a check found something wrong"),
 )
-
-
 REGION_LAYOUTS = (
     ("DRAWN", "Drawn Curves", "The new quads are those that are drawn"),
     ("AUTOMATIC", "Automatic", "The new quads are found from the region's boundary, so that its corners become regular"),
     ("CUBES", "Cubes", "A tower of cubes grows skin on the region: rings of quads along its boundary, and its own quads on top"),
     ("COPY", "Copy", "The new quads are arranged as another operation of the hierarchy has them; the region has as many sides as that one's"),
 )
+
+
 class RegionProperties:
     """Mix-in for whatever has the settings of a region that is laid out anew as properties."""
 
@@ -84,13 +84,21 @@ def surface_of(obj, scene):
         surface = hierarchy.hybrid_mesh.source if hierarchy is not None else None
     else:
         surface = obj
-    return surface if surface is not None and surface.type == "MESH" and scene.objects.get(surface.name) == surface else None
+    return surface if surface is not None and surface.type == "MESH" and objects.in_scene(surface, scene) else None
 
 
 def layout_of(surface, scene, kind="DRAWN"):
     """The object of a kind that belongs to a mesh object, or None."""
     found = (obj for obj in scene.objects if strokes.is_grease_pencil(obj) and _kind(obj) == kind and obj.hybrid_mesh_layout.surface == surface)
     return min(found, key=lambda obj: obj.name, default=None)
+
+
+def drawn_on(surface, context):
+    """The layout that is drawn in on a mesh object: the active object, or the first one that there is, or None."""
+    active = objects.active(context)
+    if active is not None and _kind(active) == "DRAWN" and active.hybrid_mesh_layout.surface == surface:
+        return active
+    return layout_of(surface, context.scene)
 
 
 def is_level(obj):

@@ -3,7 +3,7 @@
 
 import json
 
-from ...bridge import arrays, levels, meshes, placement, transfer
+from ...bridge import arrays, levels, meshes, objects, placement, transfer
 from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
@@ -32,17 +32,17 @@ class RemeshJobOperator(NativeJobOperator):
     """Base of operators whose tasks are remesh_task()s. Subclasses have hides_source(context)."""
 
     def finish(self, context, results):
-        # Everything is looked up by name again: objects may have gone while the work ran.
-        sources = []
-        for task, _ in results:
-            if task.name not in context.scene.objects:
+        # Everything is looked up again: objects may have gone while the work ran.
+        sources = [objects.find(context.scene, task.note[0].key) for task, _ in results]
+        for obj, (task, _) in zip(sources, results):
+            if obj is None:
                 raise ValueError(f"{task.name}: the object is gone from the scene; nothing was made")
-            sources.append(context.scene.objects[task.name])
         built = [build_hierarchy(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)]
         _select(context, [one.preview for one in built])
         if self.hides_source(context):
             for obj in sources:
-                obj.hide_set(True)
+                if objects.in_view_layer(obj, context.view_layer):
+                    obj.hide_set(True)
         for one in built:
             self.report({"INFO"}, _line(one))
         for task, result in results:
@@ -77,7 +77,7 @@ def build_hierarchy(context, obj, result, source, settings):
 
 
 def _select(context, objects):
-    for obj in context.selected_objects:
+    for obj in list(context.view_layer.objects.selected):
         obj.select_set(False)
     for obj in objects:
         obj.select_set(True)

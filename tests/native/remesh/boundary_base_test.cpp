@@ -13,6 +13,7 @@ namespace {
 
 using testing::ball;
 using testing::Json;
+using testing::refusal_of;
 using testing::run;
 
 Json plan_with(const Json& base) { return {{"format", "hybrid-mesh plan"}, {"version", 1}, {"base", base}}; }
@@ -89,13 +90,8 @@ TEST(BoundaryBase, WhatIsWrongIsNamedWithItsPlace) {
   for (const auto& [words, spoil] : mistakes) {
     Json bad = good;
     spoil(bad);
-    try {
-      run(ball(12, 0.5), RemeshOptions(), bad.dump());
-      ADD_FAILURE() << bad;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
-      EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << words << ": " << e.what();
-    }
+    const std::string refusal = refusal_of([&] { run(ball(12, 0.5), RemeshOptions(), bad.dump()); });
+    EXPECT_NE(refusal.find(words), std::string::npos) << bad << ": " << refusal;
   }
   EXPECT_THROW(run(ball(12), RemeshOptions(), good.dump()), Error);
 }

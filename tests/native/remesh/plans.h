@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -31,6 +33,18 @@ inline RemeshResult run(const PolygonSoup& soup, RemeshOptions options, const st
   options.plan = plan;
   Context context;
   return remesh(soup, options, context);
+}
+
+// What the library says where it refuses to do `work`, with one of these codes; empty where it does it.
+template <typename Work>
+std::string refusal_of(Work&& work, std::initializer_list<ErrorCode> codes = {ErrorCode::InvalidInput}) {
+  try {
+    work();
+  } catch (const Error& e) {
+    EXPECT_NE(std::find(codes.begin(), codes.end(), e.code()), codes.end()) << e.what();
+    return e.what();
+  }
+  return "";
 }
 
 inline Json cube_plan() {
