@@ -8,6 +8,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "parameterization/cone_motion.h"
 
@@ -15,6 +17,8 @@ namespace hybrid_mesh {
 namespace {
 
 double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - a.imag() * b.real(); }
+
+constexpr const char* kCutStays = "a cut of the surface cannot be undone in the map";
 
 // Where some vertices are, to come back to.
 class KeptMap {
@@ -300,11 +304,16 @@ class MapSmoothing {
   // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones and corners of the boundary
   // near it, which may ask a triangle for an angle that none can have, give way.
   void merge_by_force(const Progress& progress) {
+    // Where it can be done at all, most go at once.
+    const std::int64_t most = stars_.relaxed_folded() + 100 * static_cast<std::int64_t>(c_.mesh.vertex_count);
     for (int pass = 0; pass < 8; ++pass) {
       progress.check();
       std::vector<int> left;
       for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-        if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v, pass)) left.push_back(v);
+        if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v, pass)) {
+          left.push_back(v);
+          if (stars_.relaxed_folded() > most) throw Error(ErrorCode::Internal, kCutStays);
+        }
       if (left.empty()) return;
       for (const int v : left) {
         if (move_corners_near(v, [&](int corner) { return !is_inserted(corner) && unfolds_when_merged(v, pass); })) continue;
@@ -319,7 +328,7 @@ class MapSmoothing {
       }
       merge_insertions(1e-4, -1);
     }
-    throw Error(ErrorCode::Internal, "a cut of the surface cannot be undone in the map");
+    throw Error(ErrorCode::Internal, kCutStays);
   }
 
   // Adds rings of neighbours.
@@ -441,7 +450,7 @@ class MapSmoothing {
     return -1;
   }
 
-  // Of the triangles with a vertex in the region.
+  // Of the triangles with a vertex in the region; infinite where one is so thin in the map that its energy would be a rounding error.
   double energy_around(const std::vector<int>& region) const {
     std::vector<int> faces;
     for (const int v : region) {
@@ -454,7 +463,7 @@ class MapSmoothing {
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     double sum = 0;
-    for (const int f : faces) sum += stars_.face_energy(f);
+    for (const int f : faces) sum += c_.determinant(f) > 1e-9 ? stars_.face_energy(f) : std::numeric_limits<double>::infinity();
     return sum;
   }
 

@@ -9,9 +9,6 @@ namespace {
 
 double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - a.imag() * b.real(); }
 
-// Least determinant of an unfolded triangle's map, in squared Frobenius norms.
-constexpr double kLeastUnfolded = 1e-9;
-
 // (s + t) / chi(D), D = s - t.
 struct FoldedDistortion {
   double eps;
@@ -98,6 +95,7 @@ void StarRelaxation::relax(int v, bool lengthen) {
 }
 
 void StarRelaxation::relax_folded(int v, double eps) {
+  ++relaxed_folded_;
   gather(v);
   const FoldedDistortion density{eps};
   const Complex p = c_.uv[v];
@@ -139,11 +137,8 @@ bool StarRelaxation::is_unfolded(const std::vector<int>& vertices) const {
   for (const int v : vertices) {
     int h = c_.mesh.out[v];
     do {
-      const FlatTriangle& t = c_.flat(h / 3);
-      const Complex p0 = c_.at(3 * (h / 3)), p1 = c_.at(3 * (h / 3) + 1), p2 = c_.at(3 * (h / 3) + 2);
-      const double s = std::norm(t.alpha[0] * p0 + t.alpha[1] * p1 + t.alpha[2] * p2), d = std::norm(std::conj(t.alpha[0]) * p0 + std::conj(t.alpha[1]) * p1 + std::conj(t.alpha[2]) * p2);
-      // Further below, energies are rounding errors.
-      if (!(cross(p1 - p0, p2 - p0) > 0 && s - d > kLeastUnfolded * (s + d))) return false;
+      const Complex p = c_.at(h);
+      if (!(cross(c_.at(EditMesh::next(h)) - p, c_.at(EditMesh::prev(h)) - p) > 0)) return false;
       h = c_.mesh.ccw(h);
     } while (h >= 0 && h != c_.mesh.out[v]);
     if (is_wound(v)) return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "parameterization/chart_mesh.h"
@@ -23,6 +24,7 @@ class StarRelaxation {
   bool is_unfolded(const std::vector<int>& vertices) const;
   // Unfolds the stars of the given vertices by moving those of them that can move, in at most so many sweeps. Returns whether it did.
   bool unfold(const std::vector<int>& vertices, int sweeps = 24);
+  std::int64_t relaxed_folded() const { return relaxed_folded_; }  // how often relax_folded() was called
 
  private:
   struct Spoke {
@@ -44,6 +46,7 @@ class StarRelaxation {
   ChartMesh& c_;
   Distortion density_;
   std::vector<Spoke> star_;
+  std::int64_t relaxed_folded_ = 0;
 };
 
 }  // namespace hybrid_mesh
