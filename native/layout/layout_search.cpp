@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "layout/patch_sets.h"
 #include "layout/region_pattern.h"
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
@@ -166,160 +166,6 @@ class LayoutSearch {
   void begin_level() { made_.levels.push_back({options_->vertices, options_->map.vertices_a_quad, {}, {}}); }
   const LayoutScript::Level& scripted() const { return script_->levels[made_.levels.size() - 1]; }
 
-  // Patches that share a node with one of the given, and the given.
-  std::vector<char> dilated(const std::vector<char>& in) const {
-    const PatchedSurface& s = mapped_.surface;
-    std::vector<char> node(s.node_count, 0), out = in;
-    for (int q = 0; q < s.patch_count(); ++q)
-      if (in[q])
-        for (const int n : s.nodes[q]) node[n] = 1;
-    for (int q = 0; q < s.patch_count(); ++q)
-      for (const int n : s.nodes[q]) out[q] |= node[n];
-    return out;
-  }
-
-  // Connected sets of patches, across sides.
-  std::vector<std::vector<int>> components(const std::vector<char>& in, char value) const {
-    const PatchedSurface& s = mapped_.surface;
-    std::vector<std::vector<int>> parts;
-    std::vector<char> seen(s.patch_count(), 0);
-    for (int first = 0; first < s.patch_count(); ++first) {
-      if (in[first] != value || seen[first]) continue;
-      std::vector<int> part{first};
-      seen[first] = 1;
-      for (std::size_t i = 0; i < part.size(); ++i)
-        for (const PatchSide& other : s.neighbours[part[i]])
-          if (other.patch >= 0 && in[other.patch] == value && !seen[other.patch]) {
-            seen[other.patch] = 1;
-            part.push_back(other.patch);
-          }
-      std::sort(part.begin(), part.end());
-      parts.push_back(std::move(part));
-    }
-    return parts;
-  }
-
-  // The loops of the surface's boundary: per node the number of its own, or -1.
-  static std::vector<int> loops_of_nodes(const PatchedSurface& s) {
-    std::vector<std::vector<int>> next(s.node_count);
-    for (int q = 0; q < s.patch_count(); ++q)
-      for (int i = 0; i < 4; ++i)
-        if (s.neighbours[q][i].patch < 0) next[s.nodes[q][i]].push_back(s.nodes[q][(i + 1) % 4]);
-    std::vector<int> loop(s.node_count, -1);
-    int count = 0;
-    for (int first = 0; first < s.node_count; ++first) {
-      if (next[first].empty() || loop[first] >= 0) continue;
-      for (int n = first; loop[n] < 0; n = next[n].front()) loop[n] = count;
-      ++count;
-    }
-    return loop;
-  }
-
-  // Takes out of a set of patches the cheapest paths that join the surface's boundary loops to what is not in the set: with a loop inside it would be no disk.
-  void open_to_loops(std::vector<char>& in) const {
-    const PatchedSurface& s = mapped_.surface;
-    const std::vector<int> loop = loops_of_nodes(s);
-    const std::vector<std::vector<int>> outside = components(in, 0);
-    if (outside.empty()) return;
-    const auto& largest = *std::max_element(outside.begin(), outside.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    std::vector<char> reached(s.patch_count(), 0), joined(s.node_count, 0);
-    const auto reach = [&](int q) {
-      reached[q] = 1;
-      in[q] = 0;
-      for (const int n : s.nodes[q])
-        if (loop[n] >= 0) joined[loop[n]] = 1;
-    };
-    for (const int q : largest) reach(q);
-    const double least = 0.1 * std::accumulate(energy_.begin(), energy_.end(), 0.0) / s.patch_count();
-    for (;;) {
-      std::vector<double> cost(s.patch_count(), std::numeric_limits<double>::infinity());
-      std::vector<int> from(s.patch_count(), -1);
-      std::set<std::pair<double, int>> front;
-      for (int q = 0; q < s.patch_count(); ++q)
-        if (reached[q]) front.insert({cost[q] = 0, q});
-      int found = -1;
-      while (!front.empty() && found < 0) {
-        const int q = front.begin()->second;
-        front.erase(front.begin());
-        if (std::any_of(s.nodes[q].begin(), s.nodes[q].end(), [&](int n) { return loop[n] >= 0 && !joined[loop[n]]; })) found = q;
-        for (const PatchSide& other : s.neighbours[q]) {
-          if (other.patch < 0) continue;
-          const double sum = cost[q] + energy_[other.patch] + least;
-          if (!(sum < cost[other.patch])) continue;
-          front.erase({cost[other.patch], other.patch});
-          front.insert({cost[other.patch] = sum, other.patch});
-          from[other.patch] = q;
-        }
-      }
-      if (found < 0) return;
-      for (int q = found; q >= 0 && !reached[q]; q = from[q]) reach(q);
-    }
-  }
-
-  // Takes out patches where the set merely touches itself at a node, the fewer ones there.
-  void part_at_nodes(std::vector<char>& in) const {
-    const PatchedSurface& s = mapped_.surface;
-    std::vector<std::vector<int>> around(s.node_count);
-    for (int q = 0; q < s.patch_count(); ++q)
-      for (const int n : s.nodes[q]) around[n].push_back(q);
-    for (bool any = true; any;) {
-      any = false;
-      for (int n = 0; n < s.node_count; ++n) {
-        std::vector<std::vector<int>> fans;
-        for (const int q : around[n]) {
-          if (!in[q] || std::any_of(fans.begin(), fans.end(), [&](const auto& fan) { return std::find(fan.begin(), fan.end(), q) != fan.end(); })) continue;
-          std::vector<int> fan{q};
-          for (std::size_t i = 0; i < fan.size(); ++i)
-            for (int k = 0; k < 4; ++k) {
-              const int other = s.neighbours[fan[i]][k].patch;
-              if (other < 0 || !in[other] || (s.nodes[fan[i]][k] != n && s.nodes[fan[i]][(k + 1) % 4] != n)) continue;
-              if (std::find(fan.begin(), fan.end(), other) == fan.end()) fan.push_back(other);
-            }
-          fans.push_back(std::move(fan));
-        }
-        std::stable_sort(fans.begin(), fans.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-        for (std::size_t k = 1; k < fans.size(); ++k)
-          for (const int q : fans[k]) in[q] = 0, any = true;
-      }
-    }
-  }
-
-  // Disks that hold the given patches, and more where these alone are none.
-  std::vector<PatchRegion> disks(std::vector<char> in) const {
-    const PatchedSurface& s = mapped_.surface;
-    std::vector<PatchRegion> regions;
-    std::vector<char> taken(s.patch_count(), 0);
-    for (const std::vector<int>& seed : components(in, 1)) {
-      std::vector<char> region(s.patch_count(), 0);
-      for (const int q : seed) region[q] = 1;
-      for (int ring = 0; ring < 4; ++ring) {
-        // What the region encloses joins it.
-        std::vector<std::vector<int>> outside = components(region, 0);
-        std::size_t largest = 0;
-        for (std::size_t i = 0; i < outside.size(); ++i)
-          if (outside[i].size() > outside[largest].size()) largest = i;
-        for (std::size_t i = 0; i < outside.size(); ++i)
-          if (i != largest)
-            for (const int q : outside[i]) region[q] = 1;
-        std::vector<int> patches;
-        bool free = true;
-        for (int q = 0; q < s.patch_count(); ++q)
-          if (region[q]) {
-            patches.push_back(q);
-            free &= !taken[q];
-          }
-        if (!free) break;
-        if (std::optional<PatchRegion> disk = make_region(s, patches)) {
-          for (const int q : patches) taken[q] = 1;
-          regions.push_back(std::move(*disk));
-          break;
-        }
-        region = dilated(region);
-      }
-    }
-    return regions;
-  }
-
   static LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region) {
     constexpr std::size_t parts = 4;
     LayoutOutline outline;
@@ -371,14 +217,14 @@ class LayoutSearch {
     const PatchedSurface& s = mapped_.surface;
     std::vector<char> uneven(s.patch_count(), 0);
     for (int q = 0; q < s.patch_count(); ++q) uneven[q] = energy_[q] > least || energy_[q] > least * share[q] * s.patch_count();
-    std::vector<char> wide = dilated(uneven);
+    std::vector<char> wide = dilated(s, uneven);
     // A region has a boundary: where all is uneven, the best stays.
     if (std::find(wide.begin(), wide.end(), 0) == wide.end()) wide[std::min_element(energy_.begin(), energy_.end()) - energy_.begin()] = 0;
     if (const std::vector<char> rim = boundary_nodes(s); std::find(rim.begin(), rim.end(), 1) != rim.end()) {
-      open_to_loops(wide);
-      part_at_nodes(wide);
+      open_to_loops(s, wide, energy_);
+      part_at_nodes(s, wide);
     }
-    std::vector<PatchRegion> regions = disks(std::move(wide));
+    std::vector<PatchRegion> regions = disks_around(s, wide);
     std::stable_sort(regions.begin(), regions.end(), [&](const PatchRegion& a, const PatchRegion& b) { return sum_over(a, share) < sum_over(b, share); });
     return regions;
   }

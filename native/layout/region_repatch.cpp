@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "layout/face_filling.h"
+#include "layout/patch_sets.h"
 #include "layout/region_pattern.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
@@ -100,16 +101,9 @@ ChartMesh held_on_lines(ChartMesh charts) {
 
 // The given patches and so many rings around them.
 std::vector<int> with_rings(const PatchedSurface& s, const std::vector<int>& patches, int rings) {
-  std::vector<char> in(s.patch_count(), 0);
+  PatchSet in(s.patch_count(), 0);
   for (const int q : patches) in[q] = 1;
-  for (int ring = 0; ring < rings; ++ring) {
-    std::vector<char> node(s.node_count, 0);
-    for (int q = 0; q < s.patch_count(); ++q)
-      if (in[q])
-        for (const int n : s.nodes[q]) node[n] = 1;
-    for (int q = 0; q < s.patch_count(); ++q)
-      for (const int n : s.nodes[q]) in[q] |= node[n];
-  }
+  for (int ring = 0; ring < rings; ++ring) in = dilated(s, in);
   std::vector<int> out;
   for (int q = 0; q < s.patch_count(); ++q)
     if (in[q]) out.push_back(q);
