@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "parameterization/cone_motion.h"
+#include "parameterization/corner_motion.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -20,28 +20,9 @@ double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - 
 
 constexpr const char* kCutStays = "a cut of the surface cannot be undone in the map";
 
-// Where some vertices are, to come back to.
-class KeptMap {
- public:
-  KeptMap(const ChartMesh& charts, const std::vector<int>& vertices) {
-    for (const int v : vertices) kept_.push_back({v, charts.uv[v], charts.kind[v]});
-  }
-  void restore(ChartMesh& charts) const {
-    for (const Vertex& v : kept_) charts.uv[v.vertex] = v.uv, charts.kind[v.vertex] = v.kind;
-  }
-
- private:
-  struct Vertex {
-    int vertex;
-    Complex uv;
-    ChartMesh::Kind kind;
-  };
-  std::vector<Vertex> kept_;
-};
-
 class MapSmoothing {
  public:
-  MapSmoothing(ChartMesh& charts, const GlobalMapOptions& options) : c_(charts), options_(options), density_{options.theta}, stars_(charts, density_) {}
+  MapSmoothing(ChartMesh& charts, const GlobalMapOptions& options) : c_(charts), options_(options), density_{options.theta}, stars_(charts, density_), corners_(charts, density_) {}
 
   GlobalMapReport smooth(const PatchedSurface& surface, const Progress& progress) {
     progress.check();
@@ -55,8 +36,13 @@ class MapSmoothing {
     progress(0.3);
     report_.coarse_vertices = c_.mesh.vertex_count;
     newton(options_.newton_steps, progress.part(0.3, 0.45));
+    std::vector<int> corners = options_.corners_move ? corners_.all() : std::vector<int>();
     for (int round = 0; round < options_.cone_rounds; ++round) {
-      if (move_irregular_nodes(round == 0) == 0) break;
+      // Those that stay are not tried again.
+      corners = corners_.move_downhill(corners, original_);
+      const int moved = static_cast<int>(corners.size()) + move_cones(c_, density_, original_);
+      report_.cone_moves += moved;
+      if (moved == 0) break;
       newton(2, progress.part(0.45, 0.6));
     }
     report_.energy_coarse = mean_energy();
@@ -217,9 +203,9 @@ class MapSmoothing {
       const int seen_from = prev(half);
       const Complex place = c_.corner[seen_from].back(c_.at(half));
       c_.collapse(half);
-      grow(region, 1);
+      c_.mesh.grow(region, 1);
       for (int rings = 0; rings < 3; ++rings) {
-        if (rings > 0) grow(region, 1);
+        if (rings > 0) c_.mesh.grow(region, 1);
         if (!stars_.unfold(region)) continue;
         c_.move_point(cone, c_.points[w]);
         source_[cone] = source_[w];
@@ -238,73 +224,19 @@ class MapSmoothing {
   // A corner of the base on the boundary that is inside an edge of the surface goes to one of the edge's ends, the nearer one if the map unfolds there.
   void settle_corner(int corner) {
     const auto length_to = [&](int v) { return (c_.points[v] - c_.points[corner]).norm(); };
-    const bool onward = length_to(next_on_boundary(corner)) < length_to(before_on_boundary(corner));
+    const bool onward = length_to(corners_.next(corner, true)) < length_to(corners_.next(corner, false));
     for (const bool forward : {onward, !onward}) {
       int at = corner;
-      while (at >= 0 && is_inserted(at)) at = move_corner(at, forward);
+      while (at >= 0 && is_inserted(at)) at = corners_.move(at, forward);
       if (at >= 0) return;
     }
     throw Error(ErrorCode::Internal, "a corner of the base on the boundary cannot be moved to a vertex");
   }
 
-  std::vector<int> corners_near(int v) const {
-    std::vector<int> corners, region{v};
-    grow(region, 2);
-    for (const int w : region)
-      if (c_.kind[w] == ChartMesh::Kind::Pinned) corners.push_back(w);
-    return corners;
-  }
-
-  // Corners of the boundary within two rings of v go along it, a few vertices to either side, until `done`.
-  template <class Done>
-  bool move_corners_near(int v, const Done& done) {
-    for (int corner : corners_near(v))
-      for (const bool forward : {true, false})
-        for (int steps = forward ? 3 : 6; steps > 0; --steps) {
-          const int moved = move_corner(corner, forward);
-          if (moved < 0) break;
-          corner = moved;
-          if (done(corner)) return true;
-        }
-    return false;
-  }
-
-  int last_half_edge(int v) const {
-    int h = c_.mesh.out[v];
-    while (c_.mesh.ccw(h) >= 0) h = c_.mesh.ccw(h);
-    return h;
-  }
-  int next_on_boundary(int v) const { return c_.mesh.to(c_.mesh.out[v]); }
-  int before_on_boundary(int v) const { return c_.mesh.apex(last_half_edge(v)); }
-
-  // The vertex after it on the boundary, or the one before, becomes the corner in its place, and it a vertex of the side on the other side. A corner in the way moves on first.
-  // Returns the vertex, or -1 where the map does not unfold.
-  int move_corner(int corner, bool forward, int sweeps = 24, int depth = 0) {
-    const int first = c_.mesh.out[corner], last = last_half_edge(corner);
-    const int leaves = forward ? EditMesh::next(first) : prev(last), u = c_.mesh.origin[leaves];
-    if (!c_.movable(u) && (depth > 2 || move_corner(u, forward, sweeps, depth + 1) < 0)) return -1;
-    std::vector<int> region{corner, u};
-    grow(region, 3);
-    const KeptMap kept(c_, region);
-    const Complex place = c_.uv[corner], other = forward ? c_.corner[last].back(c_.at(prev(last))) : c_.corner[first].back(c_.at(EditMesh::next(first)));
-    c_.uv[u] = c_.corner[leaves].back(c_.at(forward ? first : last));
-    c_.kind[u] = ChartMesh::Kind::Pinned;
-    const bool along_u = std::abs((other - place).real()) > std::abs((other - place).imag());
-    c_.uv[corner] = along_u ? Complex(0.5 * (place + other).real(), place.imag()) : Complex(place.real(), 0.5 * (place + other).imag());
-    c_.kind[corner] = along_u ? ChartMesh::Kind::SlideU : ChartMesh::Kind::SlideV;
-    region = {corner, u};
-    for (int rings = 1; rings < 4; ++rings) {
-      grow(region, 1);
-      if (stars_.unfold(region, sweeps)) return u;
-    }
-    kept.restore(c_);
-    return -1;
-  }
-
   // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones and corners of the boundary
   // near it, which may ask a triangle for an angle that none can have, give way.
   void merge_by_force(const Progress& progress) {
-    // Where it can be done at all, most go at once.
+    // Where it can be done at all, it has taken up to 60 relaxations a vertex. Where triangles are too long for the map to be linear on them, thousands of points resist.
     const std::int64_t most = stars_.relaxed_folded() + 100 * static_cast<std::int64_t>(c_.mesh.vertex_count);
     for (int pass = 0; pass < 8; ++pass) {
       progress.check();
@@ -316,12 +248,12 @@ class MapSmoothing {
         }
       if (left.empty()) return;
       for (const int v : left) {
-        if (move_corners_near(v, [&](int corner) { return !is_inserted(corner) && unfolds_when_merged(v, pass); })) continue;
+        if (corners_.move_near(v, [&](int corner) { return !is_inserted(corner) && unfolds_when_merged(v, pass); })) continue;
         std::vector<int> region{v};
-        grow(region, pass < 2 ? 1 : 2);
+        c_.mesh.grow(region, pass < 2 ? 1 : 2);
         for (const int w : region)
           if (c_.kind[w] == ChartMesh::Kind::Cone) evict_cone(c_, density_, w, original_);
-        grow(region, 1);
+        c_.mesh.grow(region, 1);
         for (int sweep = 0; sweep < 6; ++sweep)
           for (const int w : region)
             if (c_.movable(w)) stars_.relax(w, true);
@@ -329,19 +261,6 @@ class MapSmoothing {
       merge_insertions(1e-4, -1);
     }
     throw Error(ErrorCode::Internal, kCutStays);
-  }
-
-  // Adds rings of neighbours.
-  void grow(std::vector<int>& region, int rings) const {
-    std::vector<int> ring;
-    for (; rings > 0; --rings) {
-      const std::vector<int> seed = region;
-      for (const int w : seed) {
-        c_.mesh.ring(w, ring);
-        for (const int x : ring)
-          if (std::find(region.begin(), region.end(), x) == region.end()) region.push_back(x);
-      }
-    }
   }
 
   bool unfolds_when_merged(int v, int pass) {
@@ -355,7 +274,7 @@ class MapSmoothing {
     std::sort(halves.begin(), halves.end());
     for (const auto& [cost, half] : halves) {
       std::vector<int> region{v};
-      grow(region, 1);
+      c_.mesh.grow(region, 1);
       region.erase(region.begin());
       const std::vector<Complex> before = c_.uv;
       // Where v is, seen from another corner of its face: its own frame is lost.
@@ -365,7 +284,7 @@ class MapSmoothing {
       c_.collapse(half);
       // More room and patience with those that resist.
       for (int rings = 0; rings < (pass < 3 ? 3 : 6); ++rings) {
-        if (rings > 0) grow(region, 1);
+        if (rings > 0) c_.mesh.grow(region, 1);
         if (stars_.unfold(region, pass < 3 ? 24 : 120)) return true;
       }
       c_.uv = before;
@@ -410,61 +329,6 @@ class MapSmoothing {
         if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) stars_.relax(v, true);
       progress((sweep + 1.0) / sweeps);
     }
-  }
-
-  // --- irregular nodes of the base -----------------------------------------------------------------------------------------------------
-  // Moves those to neighbouring vertices that lower the energy by it. In a further round, corners that stayed are not tried again.
-  int move_irregular_nodes(bool first_round) {
-    if (first_round) corners_.clear();
-    if (first_round && options_.corners_move)
-      for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-        if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Pinned && c_.mesh.is_boundary(v)) corners_.push_back(v);
-    std::vector<int> moved;
-    for (const int corner : corners_) {
-      int at = lowers_energy(corner, true);
-      if (at < 0) at = lowers_energy(corner, false);
-      if (at >= 0) moved.push_back(at);
-    }
-    corners_ = std::move(moved);
-    const int count = move_cones(c_, density_, original_) + static_cast<int>(corners_.size());
-    report_.cone_moves += count;
-    return count;
-  }
-
-  // Moves a corner of the boundary along it to the next vertex if the energy is lower then. Returns that vertex or -1.
-  int lowers_energy(int corner, bool forward) {
-    const int u = forward ? next_on_boundary(corner) : before_on_boundary(corner);
-    if (!c_.movable(u) || !(original_.empty() || original_[u])) return -1;
-    std::vector<int> region{corner, u};
-    grow(region, 3);
-    const auto relaxed_energy = [&] {
-      for (int sweep = 0; sweep < 5; ++sweep)
-        for (const int w : region)
-          if (c_.movable(w)) stars_.relax(w, false);
-      return energy_around(region);
-    };
-    const double before = relaxed_energy();
-    const KeptMap kept(c_, region);
-    if (move_corner(corner, forward, 8) == u && relaxed_energy() < before * (1 - 1e-4)) return u;
-    kept.restore(c_);
-    return -1;
-  }
-
-  // Of the triangles with a vertex in the region; infinite where one is so thin in the map that its energy would be a rounding error.
-  double energy_around(const std::vector<int>& region) const {
-    std::vector<int> faces;
-    for (const int v : region) {
-      int h = c_.mesh.out[v];
-      do {
-        faces.push_back(h / 3);
-        h = c_.mesh.ccw(h);
-      } while (h >= 0 && h != c_.mesh.out[v]);
-    }
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    double sum = 0;
-    for (const int f : faces) sum += c_.determinant(f) > 1e-9 ? stars_.face_energy(f) : std::numeric_limits<double>::infinity();
-    return sum;
   }
 
   // --- the collapse hierarchy ------------------------------------------------------------------------------------------------------
@@ -566,20 +430,20 @@ class MapSmoothing {
         for (int tries = 0; tries < 3 && !placed && !unfolds_around(v, 2, 24); ++tries) {
           c_.collapse(h);
           std::vector<int> region{kept};
-          grow(region, 2 + tries);
+          c_.mesh.grow(region, 2 + tries);
           for (int sweep = 0; sweep < 10; ++sweep)
             for (const int w : region)
               if (c_.movable(w)) stars_.relax(w, true);
           placed = c_.undo_collapse(h);
         }
-        if (!placed && !corners_near(v).empty()) {
+        if (!placed && options_.corners_move && !corners_.near(v).empty()) {
           // Collapsed again, the map is unfolded as it was.
           const auto take_back = [&] {
             c_.collapse(h);
             c_.uv = before;
           };
           take_back();
-          placed = move_corners_near(kept, [&](int) {
+          placed = corners_.move_near(kept, [&](int) {
             before = c_.uv;
             if (c_.undo_collapse(h) || unfolds_around(v, 2, 24)) return true;
             take_back();
@@ -624,7 +488,7 @@ class MapSmoothing {
   // The star of v has no kernel: its neighbours are moved until it has one.
   bool unfolds_around(int v, int rings, int sweeps) {
     std::vector<int> region{v};
-    grow(region, rings);
+    c_.mesh.grow(region, rings);
     return stars_.unfold(region, sweeps);
   }
   void untangle(int v) {
@@ -761,10 +625,10 @@ class MapSmoothing {
   const GlobalMapOptions& options_;
   Distortion density_;
   StarRelaxation stars_;
+  CornerMotion corners_;
   GlobalMapReport report_;
   std::vector<int> log_;
   std::vector<PointSource> source_;  // per vertex; empty where nothing was cut
-  std::vector<int> corners_;         // of the boundary, to be moved in the present round
   std::vector<char> original_;       // per vertex whether it is a point of the surface that was cut; empty: all are
 };
 

@@ -54,6 +54,18 @@ void EditMesh::ring(int v, std::vector<int>& vertices) const {
   } while (h != out[v]);
 }
 
+void EditMesh::grow(std::vector<int>& vertices, int rings) const {
+  std::vector<int> around;
+  for (; rings > 0; --rings) {
+    const std::vector<int> seed = vertices;
+    for (const int v : seed) {
+      ring(v, around);
+      for (const int w : around)
+        if (std::find(vertices.begin(), vertices.end(), w) == vertices.end()) vertices.push_back(w);
+    }
+  }
+}
+
 std::vector<int> EditMesh::boundary_loops() const {
   std::vector<int> loop(out.size(), -1);
   int count = 0;

@@ -33,6 +33,7 @@ class EditMesh {
   int valence(int v) const;  // number of edges
   // The vertices around v, counter-clockwise; for a boundary vertex from its clockwise-most to its last neighbour.
   void ring(int v, std::vector<int>& vertices) const;
+  void grow(std::vector<int>& vertices, int rings) const;  // adds rings of neighbours
   std::vector<int> boundary_loops() const;  // per vertex the number of its boundary loop, or -1. Operations leave it as it is
   int find(int a, int b) const;  // the half-edge a -> b or -1 (the mesh may still hold b -> a at a boundary)
   bool adjacent(int a, int b) const { return find(a, b) >= 0 || find(b, a) >= 0; }

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "remesh/remesh.h"
-#include "surface/topology_summary.h"
+#include "soundness.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -84,15 +84,9 @@ void expect_kept(const PolygonSoup& soup) {
   options.base = BaseSize::Minimal;
   Context context;
   const RemeshResult r = remesh(soup, options, context);
-  EXPECT_TRUE(find_defects(r.hierarchy).empty());
-  const TopologySummary before = summarize_topology(to_soup(r.repaired)), after = summarize_topology(to_soup(r.final_mesh));
-  EXPECT_EQ(after.euler, before.euler);
-  EXPECT_EQ(after.nonmanifold_edges + after.nonmanifold_vertices + after.misoriented_edges, 0);
+  testing::expect_sound(r);
   EXPECT_LE(r.report["final"]["hausdorff"].get<double>(), 0.01);
-  for (int n = 0; n < r.hierarchy.node_count(); ++n)
-    if (const PatchMap* map = r.hierarchy.map(n)) {
-      EXPECT_STREQ(find_map_defect(*map), "") << n;
-    }
+  testing::expect_maps_without_defects(r.hierarchy);
 }
 
 TEST(Spikes, ARodIsKept) { expect_kept(rod()); }
