@@ -9,8 +9,8 @@ import numpy
 import pytest
 
 from conftest import module
+from layout_tools import draw, layout_of, read, state
 from test_layout_remesh import address
-from test_layouts import draw, layout_of, read, state
 from test_samples import SAMPLES
 
 sys.path.insert(0, str(SAMPLES.parent / "scripts"))

@@ -9,7 +9,7 @@ import pytest
 
 from conftest import module
 from cube import cube_lines
-from test_layouts import broken_cube, draw, layout_of, read, state, strokes, vector
+from layout_tools import broken_cube, draw, layout_of, read, state, strokes, vector
 
 
 def plan_of(obj):
