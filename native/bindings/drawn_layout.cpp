@@ -8,8 +8,8 @@
 #include "bindings/conversions.h"
 #include "bindings/job.h"
 #include "bindings/layout_problems.h"
-#include "layout/face_filling.h"
-#include "layout/layout_transfer.h"
+#include "layout/drawn/face_filling.h"
+#include "layout/drawn/layout_transfer.h"
 #include "remesh/plan.h"
 #include "surface/repair.h"
 

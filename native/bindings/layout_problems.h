@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "layout/drawn_layout.h"
+#include "layout/drawn/drawn_layout.h"
 
 namespace hybrid_mesh {
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "layout/region_pattern.h"
+#include "layout/regions/region_pattern.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hierarchy/hybrid_mesh.h"
-#include "layout/layout_search.h"
+#include "layout/search/layout_search.h"
 
 namespace hybrid_mesh {
 

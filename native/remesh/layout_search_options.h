@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "layout/base_domain.h"
-#include "layout/layout_search.h"
+#include "layout/base/base_domain.h"
+#include "layout/search/layout_search.h"
 #include "remesh/remesh.h"
 #include "surface/topology_summary.h"
 

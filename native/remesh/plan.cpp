@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "layout/region_pattern.h"
+#include "layout/regions/region_pattern.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "layout/boundary_tower.h"
-#include "layout/layout_search.h"
-#include "layout/layout_transfer.h"
-#include "layout/region_repatch.h"
+#include "layout/drawn/boundary_tower.h"
+#include "layout/search/layout_search.h"
+#include "layout/drawn/layout_transfer.h"
+#include "layout/search/region_repatch.h"
 #include "remesh/working_surface.h"
 
 namespace hybrid_mesh {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "layout/region_repatch.h"
+#include "layout/search/region_repatch.h"
 
 namespace hybrid_mesh {
 namespace {

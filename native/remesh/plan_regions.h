@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "layout/base_map.h"
+#include "layout/search/base_map.h"
 #include "remesh/plan.h"
 #include "remesh/working_surface.h"
 

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "hierarchy/stretch.h"
-#include "layout/base_map.h"
+#include "layout/search/base_map.h"
 #include "parameterization/patch_extraction.h"
 #include "remesh/adaptive_refinement.h"
 #include "remesh/layout_hierarchy.h"

@@ -10,6 +10,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 LAYERS = ["base", "surface", "parameterization", "topology", "layout", "hierarchy", "subdivision", "remesh", "codec", "bindings"]
+# Folders inside a layer. A file outside them is seen by all of them, and sees none.
+ROOMS = {"layout": ["curves", "disks", "base", "regions", "drawn", "search"]}
 SOURCE = {".h", ".cpp", ".py", ".cmake"}
 
 
@@ -40,6 +42,14 @@ def upward_includes(layer, text):
     """The includes of a file of `layer` that name a layer to its right, or no layer at all."""
     allowed = LAYERS[: LAYERS.index(layer) + 1]
     return [name for name in includes(text) if name.split("/")[0] not in allowed]
+
+
+def includes_of_later_rooms(layer, path, text):
+    """The includes of a file that name a room of its own layer which comes after the file's."""
+    rooms = ROOMS[layer]
+    allowed = rooms[: rooms.index(path.parts[2]) + 1] if len(path.parts) > 3 else []
+    named = [name.split("/") for name in includes(text)]
+    return ["/".join(parts) for parts in named if parts[0] == layer and len(parts) > 2 and parts[1] not in allowed]
 
 
 def imported_modules(text):
@@ -75,6 +85,20 @@ def test_cmake_builds_the_layers_in_this_order():
 def test_no_layer_includes_upwards(layer):
     wrong = {str(path): upward_includes(layer, text_of(path)) for path in NATIVE if path.parts[1] == layer}
     assert {path: names for path, names in wrong.items() if names} == {}
+
+
+@pytest.mark.parametrize("layer", ROOMS)
+def test_no_room_includes_a_later_one(layer):
+    inside = [path for path in NATIVE if path.parts[1] == layer]
+    assert {path.parts[2] for path in inside if len(path.parts) > 3} == set(ROOMS[layer])
+    wrong = {str(path): includes_of_later_rooms(layer, path, text_of(path)) for path in inside}
+    assert {path: names for path, names in wrong.items() if names} == {}
+
+
+def test_an_include_of_a_later_room_is_seen():
+    text = '#include "layout/drawn/drawn_layout.h"\n#include "layout/curves/surface_paths.h"\n'
+    assert includes_of_later_rooms("layout", Path("native/layout/curves/a.h"), text) == ["layout/drawn/drawn_layout.h"]
+    assert includes_of_later_rooms("layout", Path("native/layout/a.h"), text) == ["layout/drawn/drawn_layout.h", "layout/curves/surface_paths.h"]
 
 
 def test_an_upward_include_is_seen():

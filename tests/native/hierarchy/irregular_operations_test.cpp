@@ -12,7 +12,7 @@
 #include "hierarchy/archive.h"
 #include "hierarchy/bases.h"
 #include "hierarchy/brute_force.h"
-#include "layout/disk_layout.h"
+#include "layout/disks/disk_layout.h"
 
 namespace hybrid_mesh {
 namespace {

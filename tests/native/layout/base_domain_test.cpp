@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/base_domain.h"
+#include "layout/base/base_domain.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <set>
 
 #include "generated_surfaces.h"
-#include "layout/decimation.h"
+#include "layout/base/decimation.h"
 #include "layouts.h"
 #include "models.h"
 #include "remesh/working_surface.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/base_map.h"
+#include "layout/search/base_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/boundary_tower.h"
+#include "layout/drawn/boundary_tower.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "generated_surfaces.h"
-#include "layout/boundary_loop.h"
+#include "layout/drawn/boundary_loop.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "shapes.h"

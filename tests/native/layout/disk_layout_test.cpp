@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/disk_layout.h"
+#include "layout/disks/disk_layout.h"
 
 #include <gtest/gtest.h>
 

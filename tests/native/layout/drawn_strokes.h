@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "generated_surfaces.h"
-#include "layout/drawn_layout.h"
+#include "layout/drawn/drawn_layout.h"
 #include "shapes.h"
 
 namespace hybrid_mesh::testing {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/face_filling.h"
+#include "layout/drawn/face_filling.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <set>
 
 #include "drawn_strokes.h"
-#include "layout/layout_transfer.h"
-#include "layout/quad_complex.h"
+#include "layout/drawn/layout_transfer.h"
+#include "layout/drawn/quad_complex.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 

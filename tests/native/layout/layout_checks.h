@@ -9,7 +9,7 @@
 #include <set>
 
 #include "drawn_strokes.h"
-#include "layout/patch_layout.h"
+#include "layout/drawn/patch_layout.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "surface/closest_point.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/layout_transfer.h"
+#include "layout/drawn/layout_transfer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "drawn_strokes.h"
-#include "layout/base_domain.h"
+#include "layout/base/base_domain.h"
 #include "layout_checks.h"
 #include "models.h"
 

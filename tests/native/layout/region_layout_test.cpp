@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/region_layout.h"
+#include "layout/regions/region_layout.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/region_pattern.h"
+#include "layout/regions/region_pattern.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "layout/disk_layout.h"
+#include "layout/disks/disk_layout.h"
 #include "shapes.h"
 
 namespace hybrid_mesh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/surface_curves.h"
+#include "layout/curves/surface_curves.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "generated_surfaces.h"
-#include "layout/curve_tightening.h"
+#include "layout/curves/curve_tightening.h"
 #include "layouts.h"
 #include "shapes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/triangle_pairing.h"
+#include "layout/base/triangle_pairing.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "generated_surfaces.h"
-#include "layout/base_domain.h"
+#include "layout/base/base_domain.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"

@@ -11,7 +11,7 @@
 
 #include "codec/container.h"
 #include "hierarchy/operation_template.h"
-#include "layout/region_pattern.h"
+#include "layout/regions/region_pattern.h"
 #include "remesh/plans.h"
 
 namespace hybrid_mesh {

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Based on: Tarini, Pietroni, Cignoni, Panozzo, Puppo, Practical quad mesh simplification, 2010; Daniels, Silva, Cohen, Localized
+// quadrilateral coarsening, 2009 (the local operations).
+#include "layout/base/quad_layout.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "layout/base/triangle_pairing.h"
+
+namespace hybrid_mesh {
+namespace {
+
+struct Corners {
+  std::array<int, 4> v;
+};
+
+class QuadCoarsening {
+ public:
+  QuadCoarsening(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options, std::vector<MeshEdit>& log)
+      : mesh_(mesh), points_(points), quadrics_(std::move(quadrics)), options_(options), log_(log) {}
+
+  QuadLayout run(const Progress& progress) {
+    pair();
+    double area = 0;
+    for (std::size_t v = 0; v < points_.size(); ++v)
+      if (mesh_.vertex_alive(static_cast<int>(v))) area += quadrics_[v].area;
+    side_ = std::sqrt(area / std::max(1.0, options_.size));
+    clean();
+    int rounds = 0;
+    while (size() > options_.size) {
+      progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
+      // Few quads may clean each other away.
+      const bool last_ones = quad_count() < 2 * options_.least + 8;
+      const State before = last_ones ? State{log_.size(), mate_, split_, quadrics_} : State{};
+      if (!collapse_cheapest()) break;
+      clean();
+      if (!last_ones || quad_count() >= options_.least) continue;
+      restore(before);
+      break;
+    }
+    if (quad_count() > options_.least) clean();
+    progress(1);
+    return layout();
+  }
+
+ private:
+  struct State {
+    std::size_t log = 0;
+    std::vector<int> mate, split;
+    std::vector<VertexQuadric> quadrics;
+  };
+  void restore(const State& state) {
+    for (; log_.size() > state.log; log_.pop_back()) {
+      if (log_.back().kind == MeshEdit::Kind::Collapse)
+        mesh_.undo_collapse(log_.back().half_edge);
+      else
+        mesh_.undo_flip(log_.back().half_edge);
+    }
+    mate_ = state.mate;
+    split_ = state.split;
+    quadrics_ = state.quadrics;
+  }
+
+  // --- quads as pairs of triangles -------------------------------------------------------------------------------------------
+  bool is_pair(int f) const { return mate_[f] != f; }
+  int diagonal(int f) const {
+    for (int h = 3 * f; h < 3 * f + 3; ++h)
+      if (mesh_.opposite[h] >= 0 && mesh_.opposite[h] / 3 == mate_[f]) return h;
+    return -1;
+  }
+  bool is_diagonal(int h) const { return mesh_.opposite[h] >= 0 && is_pair(h / 3) && mate_[h / 3] == mesh_.opposite[h] / 3; }
+  // The quad's corners from `start` half-edge (not a diagonal), counter-clockwise.
+  Corners corners(int h) const {
+    const int n = EditMesh::next(h), p = EditMesh::prev(h);
+    if (is_diagonal(n)) return {{mesh_.from(h), mesh_.to(h), mesh_.apex(mesh_.opposite[n]), mesh_.apex(h)}};
+    return {{mesh_.from(h), mesh_.to(h), mesh_.apex(h), mesh_.apex(mesh_.opposite[p])}};
+  }
+  int quad_count() const {
+    int faces = 0;
+    for (std::size_t f = 0; f < mate_.size(); ++f)
+      if (mesh_.alive[f]) faces += is_pair(static_cast<int>(f)) ? 1 : 2;
+    return faces / 2;
+  }
+  double size() const {
+    int sides = 0;
+    for (std::size_t f = 0; f < mate_.size(); ++f)
+      if (mesh_.alive[f])
+        for (std::size_t h = 3 * f; h < 3 * f + 3; ++h) sides += mesh_.opposite[h] < 0 ? (split_[f] == static_cast<int>(h) ? 2 : 1) : 0;
+    return quad_count() + options_.boundary_side * sides;
+  }
+  // Number of quads around a vertex less the regular number (4 inside, 2 at the boundary).
+  int excess(int v) const {
+    int edges = 0;
+    int h = mesh_.out[v];
+    do {
+      if (!is_diagonal(h)) ++edges;
+      const int n = mesh_.ccw(h);
+      if (n < 0) return edges - (options_.boundary_quads.empty() ? 2 : options_.boundary_quads[v]);
+      h = n;
+    } while (h != mesh_.out[v]);
+    return edges - 4;
+  }
+  static double valence_energy(int excess) { return excess * excess + (excess > 2 || excess < -1 ? 4.0 : 0.0); }
+
+  // 0 for a square; grows with corners away from right angles, folds and elongation.
+  double badness(const std::array<int, 4>& q) const {
+    std::array<Vec3, 4> p;
+    for (int i = 0; i < 4; ++i) p[i] = points_[q[i]];
+    const Vec3 n = (p[2] - p[0]).cross(p[3] - p[1]);
+    double sum = 0;
+    std::array<double, 4> length;
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 a = p[(i + 1) % 4] - p[i], b = p[(i + 3) % 4] - p[i];
+      length[i] = a.norm();
+      const double l = std::sqrt(a.squaredNorm() * b.squaredNorm() * n.squaredNorm());
+      sum += 1 - (l > 0 ? a.cross(b).dot(n) / l : -1.0);
+    }
+    const double aspect = std::log(std::max(1e-9, length[0] + length[2]) / std::max(1e-9, length[1] + length[3]));
+    return sum + aspect * aspect;
+  }
+
+  void pair() {
+    std::vector<int> faces, index(mesh_.alive.size(), -1);
+    for (std::size_t f = 0; f < mesh_.alive.size(); ++f)
+      if (mesh_.alive[f]) {
+        index[f] = static_cast<int>(faces.size());
+        faces.push_back(static_cast<int>(f));
+      }
+    std::vector<PairCandidate> candidates;
+    std::vector<int> halves;
+    for (const int f : faces)
+      for (int h = 3 * f; h < 3 * f + 3; ++h) {
+        const int o = mesh_.opposite[h];
+        if (o >= 0 && o < h) continue;
+        if (o < 0) {
+          if (!options_.boundary_quads.empty()) continue;
+          candidates.push_back({index[f], -1, -10.0});
+        } else {
+          const double b = badness({mesh_.from(h), mesh_.apex(o), mesh_.to(h), mesh_.apex(h)});
+          candidates.push_back({index[f], index[o / 3], -b});
+        }
+        halves.push_back(h);
+      }
+    const std::vector<int> choice = pair_triangles(static_cast<int>(faces.size()), candidates);
+    mate_.assign(mesh_.alive.size(), -1);
+    split_.assign(mesh_.alive.size(), -1);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const PairCandidate& c = candidates[choice[i]];
+      const int f = faces[i];
+      if (c.b < 0) {
+        mate_[f] = f;
+        split_[f] = halves[choice[i]];
+      } else {
+        mate_[f] = faces[c.a] == f ? faces[c.b] : faces[c.a];
+      }
+    }
+  }
+
+  // --- local operations ------------------------------------------------------------------------------------------------------
+  bool flip(int h) {
+    if (!mesh_.can_flip(h)) return false;
+    mesh_.flip(h);
+    log_.push_back({MeshEdit::Kind::Flip, h});
+    return true;
+  }
+  // Makes the diagonal of f's quad touch vertex v.
+  bool diagonal_at(int f, int v) {
+    const int d = diagonal(f);
+    if (mesh_.from(d) == v || mesh_.to(d) == v) return true;
+    return flip(d);
+  }
+  void collapse(int h) {
+    const int v = mesh_.from(h), u = mesh_.to(h);
+    quadrics_[u].planes += quadrics_[v].planes;
+    quadrics_[u].area += quadrics_[v].area;
+    mesh_.collapse(h);
+    log_.push_back({MeshEdit::Kind::Collapse, h});
+  }
+
+  // An interior vertex between two quads only: the quads become one.
+  bool remove_doublet(int v) {
+    if (mesh_.is_boundary(v) || excess(v) != -2) return false;
+    std::vector<int> faces;
+    int h = mesh_.out[v];
+    do {
+      if (!is_pair(h / 3)) return false;
+      faces.push_back(h / 3);
+      faces.push_back(mate_[h / 3]);
+      h = mesh_.ccw(h);
+    } while (h != mesh_.out[v]);
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    if (faces.size() != 4) return false;
+    h = mesh_.out[v];
+    do {
+      if (mesh_.can_collapse(h)) {
+        collapse(h);
+        std::vector<int> left;
+        for (const int f : faces)
+          if (mesh_.alive[f]) left.push_back(f);
+        mate_[left[0]] = left[1];
+        mate_[left[1]] = left[0];
+        return true;
+      }
+      h = mesh_.ccw(h);
+    } while (h != mesh_.out[v]);
+    return false;
+  }
+
+  struct Rotation {
+    int half_edge = -1;
+    bool left = false;  // the new edge joins the corner after the edge's end to the one after its start (seen from each quad)
+    double gain = 0;
+  };
+
+  Rotation best_rotation(int g) const {
+    Rotation best;
+    const int o = mesh_.opposite[g];
+    if (o < 0 || is_diagonal(g) || !is_pair(g / 3) || !is_pair(o / 3)) return best;
+    if (mate_[g / 3] == o / 3 || g / 3 == mate_[o / 3]) return best;
+    const Corners q1 = corners(g), q2 = corners(o);
+    const int a = q1.v[0], d = q1.v[1], e = q1.v[2], f = q1.v[3], b = q2.v[2], c = q2.v[3];
+    const std::set<int> distinct{a, b, c, d, e, f};
+    if (distinct.size() != 6) return best;
+    const auto energy = [&](int v, int change) { return valence_energy(excess(v) + change); };
+    const double shape = badness(q1.v) + badness(q2.v);
+    const double lost = energy(a, 0) + energy(d, 0) - energy(a, -1) - energy(d, -1);
+    const auto consider = [&](bool left, int x, int y, const std::array<int, 4>& n1, const std::array<int, 4>& n2) {
+      const double valence = lost + energy(x, 0) + energy(y, 0) - energy(x, 1) - energy(y, 1);
+      const double change = shape - badness(n1) - badness(n2);
+      const double gain = valence + 1.5 * change;
+      if (gain > best.gain + 1e-9) best = {g, left, gain};
+    };
+    consider(true, e, b, {e, f, a, b}, {b, c, d, e});
+    consider(false, f, c, {f, a, b, c}, {c, d, e, f});
+    return best;
+  }
+
+  bool rotate(const Rotation& r) {
+    const int g = r.half_edge, o = mesh_.opposite[g];
+    const int f1 = g / 3, f2 = o / 3;
+    // The rotated edge is flipped between two triangles; first the diagonals are turned so that those have the new edge's ends as apexes.
+    const int a = mesh_.from(g), d = mesh_.to(g);
+    if (!diagonal_at(f1, r.left ? a : d) || !diagonal_at(f2, r.left ? d : a)) return false;
+    int h = mesh_.find(a, d);
+    if (h < 0 || !mesh_.can_flip(h)) return false;
+    const int x = h / 3, y = mesh_.opposite[h] / 3;
+    const int xm = mate_[x], ym = mate_[y];
+    if (!flip(h)) return false;
+    if (!r.left) {
+      mate_[x] = ym, mate_[ym] = x;
+      mate_[y] = xm, mate_[xm] = y;
+    }
+    return true;
+  }
+
+  struct DiagonalCollapse {
+    double cost = 1e300;
+    int from = -1, to = -1, face = -1;
+  };
+
+  // Merges `from` into `to`, opposite corners of face f's quad.
+  double diagonal_cost(int from, int to, int x, int y) const {
+    if (mesh_.is_boundary(from)) return 1e300;
+    const Vec3& target = points_[to];
+    const double area = quadrics_[from].area + quadrics_[to].area;
+    double error = (quadrics_[from].planes(target) + quadrics_[to].planes(target)) / std::max(area, 1e-300);
+    // Shape of the quads around `from` once it has moved.
+    double worst = 0, total = 0, longest = 0;
+    int count = 0;
+    int h = mesh_.out[from];
+    do {
+      if (!is_diagonal(h)) {
+        std::array<int, 4> q = corners(h).v;
+        if (!is_pair(h / 3)) return 1e300;
+        if (std::find(q.begin(), q.end(), to) == q.end()) {
+          const double before = badness(q);
+          std::replace(q.begin(), q.end(), from, to);
+          const double after = badness(q);
+          worst = std::max(worst, after);
+          total += after - before;
+          ++count;
+          longest = std::max({longest, (points_[q[1]] - points_[q[0]]).squaredNorm(), (points_[q[3]] - points_[q[0]]).squaredNorm()});
+        }
+      }
+      h = mesh_.ccw(h);
+    } while (h != mesh_.out[from]);
+    const int merged = excess(from) + excess(to) + (mesh_.is_boundary(to) ? 1 : 2);
+    const double valence = valence_energy(merged) + valence_energy(excess(x) - 1) + valence_energy(excess(y) - 1) - valence_energy(excess(from)) -
+                           valence_energy(excess(to)) - valence_energy(excess(x)) - valence_energy(excess(y));
+    if (merged > 3) return 1e300;
+    const double scale = side_ * side_;
+    return error / scale + 0.02 * longest / scale + 0.05 * std::max(0.0, total) + 0.03 * std::max(0.0, worst - 2) + 0.03 * valence;
+  }
+
+  bool collapse_cheapest() {
+    std::vector<DiagonalCollapse> all;
+    for (std::size_t i = 0; i < mate_.size(); ++i) {
+      const int f = static_cast<int>(i);
+      if (!mesh_.alive[i] || !is_pair(f) || mate_[f] < f) continue;
+      const int d = diagonal(f);
+      const int x = mesh_.from(d), y = mesh_.to(d), p = mesh_.apex(d), q = mesh_.apex(mesh_.opposite[d]);
+      all.push_back({diagonal_cost(x, y, p, q), x, y, f});
+      all.push_back({diagonal_cost(y, x, p, q), y, x, f});
+      all.push_back({diagonal_cost(p, q, x, y), p, q, f});
+      all.push_back({diagonal_cost(q, p, x, y), q, p, f});
+    }
+    std::sort(all.begin(), all.end(), [](const DiagonalCollapse& a, const DiagonalCollapse& b) {
+      return std::tie(a.cost, a.face, a.from) < std::tie(b.cost, b.face, b.from);
+    });
+    for (const DiagonalCollapse& c : all) {
+      if (c.cost >= 1e299) return false;
+      if (!diagonal_at(c.face, c.from)) continue;
+      const int h = mesh_.find(c.from, c.to);
+      if (h < 0 || !mesh_.can_collapse(h)) continue;
+      collapse(h);
+      return true;
+    }
+    return false;
+  }
+
+  // Removes doublets and rotates edges where that gains, until nothing changes.
+  void clean() {
+    for (int sweep = 0; sweep < 50; ++sweep) {
+      bool changed = false;
+      for (std::size_t v = 0; v < points_.size(); ++v)
+        if (mesh_.vertex_alive(static_cast<int>(v)) && remove_doublet(static_cast<int>(v))) changed = true;
+      for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
+        if (!mesh_.alive[h / 3] || mesh_.opposite[h] < h) continue;
+        const Rotation r = best_rotation(h);
+        if (r.half_edge >= 0 && r.gain > 0.05 && rotate(r)) changed = true;
+      }
+      if (!changed) return;
+    }
+  }
+
+  // --- result ----------------------------------------------------------------------------------------------------------------
+  QuadLayout layout() const {
+    QuadLayout out;
+    std::vector<int> node(points_.size(), -1);
+    for (std::size_t v = 0; v < points_.size(); ++v)
+      if (mesh_.vertex_alive(static_cast<int>(v))) {
+        node[v] = static_cast<int>(out.node_vertex.size());
+        out.node_vertex.push_back(static_cast<int>(v));
+      }
+    std::map<int, int> curve_of_edge;
+    const auto side = [&](int h) {
+      QuadLayout::Side s;
+      if (mesh_.opposite[h] < 0) return s;
+      const auto [it, fresh] = curve_of_edge.insert({mesh_.edge[h], static_cast<int>(out.curves.size())});
+      if (fresh) out.curves.push_back({mesh_.from(h), mesh_.to(h), mesh_.edge[h]});
+      s.curve = it->second;
+      s.forward = out.curves[s.curve].start == mesh_.from(h);
+      return s;
+    };
+    for (std::size_t i = 0; i < mate_.size(); ++i) {
+      const int f = static_cast<int>(i);
+      if (!mesh_.alive[i] || mate_[f] < f) continue;
+      QuadLayout::Quad quad;
+      if (is_pair(f)) {
+        const int d = diagonal(f), o = mesh_.opposite[d];
+        const std::array<int, 4> halves{EditMesh::next(o), EditMesh::prev(o), EditMesh::next(d), EditMesh::prev(d)};
+        for (int k = 0; k < 4; ++k) {
+          quad.nodes[k] = node[mesh_.from(halves[k])];
+          quad.sides[k] = side(halves[k]);
+        }
+      } else {
+        const int h = split_[f];
+        const int extra = static_cast<int>(out.node_vertex.size());
+        out.node_vertex.push_back(-1);
+        quad.nodes = {node[mesh_.from(h)], extra, node[mesh_.to(h)], node[mesh_.apex(h)]};
+        quad.sides = {QuadLayout::Side{}, QuadLayout::Side{}, side(EditMesh::next(h)), side(EditMesh::prev(h))};
+      }
+      out.quads.push_back(quad);
+    }
+    return out;
+  }
+
+  EditMesh& mesh_;
+  const std::vector<Vec3>& points_;
+  std::vector<VertexQuadric> quadrics_;
+  const QuadLayoutOptions& options_;
+  std::vector<MeshEdit>& log_;
+  std::vector<int> mate_;   // per face: the other triangle of its quad, or itself
+  std::vector<int> split_;  // per face that is its own mate: the boundary half-edge that holds the fourth node
+  double side_ = 1;
+};
+
+}  // namespace
+
+QuadLayout make_quad_layout(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,
+                            std::vector<MeshEdit>& log, const Progress& progress) {
+  return QuadCoarsening(mesh, points, std::move(quadrics), options, log).run(progress);
+}
+
+}  // namespace hybrid_mesh

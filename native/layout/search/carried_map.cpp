@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/search/carried_map.h"
+
+#include <Eigen/Geometry>
+#include <utility>
+
+#include "parameterization/patch_extraction.h"
+
+namespace hybrid_mesh {
+namespace {
+
+double area_of(const TriangleSurface& surface) {
+  double area = 0;
+  for (const auto& f : surface.faces) area += 0.5 * (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  return area;
+}
+
+std::vector<std::array<int, 3>> faces_of(const EditMesh& mesh) {
+  std::vector<std::array<int, 3>> faces(mesh.alive.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = {mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]};
+  return faces;
+}
+
+PatchedSurface by_surface(PatchedSurface patches, const CutSurface& cut) {
+  for (int& f : patches.mesh.source_face) f = cut.coarse.source_face[f];
+  for (PointSource& s : patches.source)
+    for (int& v : s.vertices)
+      if (v >= 0) v = cut.vertex[v];
+  return patches;
+}
+
+}  // namespace
+
+CarriedMap::CarriedMap(const TriangleSurface& surface, CutSurface cut)
+    : layout(by_surface(std::move(cut.patches), cut)), surface_(surface), collapsed_(std::move(cut.collapsed)), log_(std::move(cut.log)), faces_(faces_of(collapsed_)) {}
+
+void CarriedMap::carry(double vertices, const GlobalMapOptions& options, const Progress& progress) {
+  if (log_.empty() || collapsed_.vertex_count >= vertices) return;
+  ChartMesh coarse = charts;
+  const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress.part(0, 0.1));
+  ChartMesh fine(coarse, collapsed_, surface_.points, area_of(surface_), vertex_of);
+  const std::size_t wanted = vertices < static_cast<double>(surface_.points.size()) ? static_cast<std::size_t>(vertices) - collapsed_.vertex_count : log_.size();
+  const std::size_t undone = std::min(wanted, log_.size());
+  carry_map(fine, {log_.end() - static_cast<std::ptrdiff_t>(undone), log_.end()}, options, progress.part(0.1, 1));
+  log_.resize(log_.size() - undone);
+  charts = std::move(fine);
+  collapsed_ = charts.mesh;
+  faces_ = faces_of(collapsed_);
+  layout.mesh = surface_;
+  layout.patch.clear();
+  layout.sides.clear();
+  layout.source.clear();
+  for (std::size_t f = 0; f < surface_.faces.size(); ++f) layout.mesh.source_face[f] = static_cast<int>(f);
+  for (std::size_t v = 0; v < surface_.points.size(); ++v) layout.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
+}
+
+void CarriedMap::quadrisect() {
+  charts.quadrisect();
+  layout = quadrisected(std::move(layout));
+}
+
+MappedSurface CarriedMap::cut(const Progress& progress) const {
+  ChartMesh rounded = charts;
+  return glue_patch_maps(extract_patch_maps(rounded, layout, faces_, progress), layout, faces_);
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "layout/search/base_map.h"
+#include "layout/drawn/drawn_layout.h"
+
+namespace hybrid_mesh {
+
+// How the new quads of a region are found.
+struct RegionPattern {
+  enum class Kind {
+    Drawn,      // cut along curves
+    Automatic,  // see automatic_edit()
+    Cubes,      // a cube tower
+    Template    // given
+  };
+  Kind kind = Kind::Drawn;
+  std::vector<DrawnStroke> strokes;       // Drawn
+  int height = 0;                         // Cubes; 0: see tower_height(), at least 1
+  std::vector<std::array<int, 4>> quads;  // Template: numbered as in LayoutEdit
+};
+
+// Quads of one level that are to be laid out anew.
+struct RegionRepatch {
+  std::vector<int> patches;
+  PatchSide start;        // the boundary side that begins at corner 0; patch -1: any
+  RegionPattern pattern;  // its strokes on a surface of unit size, as the level's map is
+  int buffer_rings = 1;   // so many rings of quads around are relaxed with the new ones; 0: none
+};
+
+// Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is relaxed there and in the rings
+// around. What lies farther off keeps its map exactly. `map`: that of the region's level over `surface`; it is changed, and so is `map.changed`. Returns the edit.
+// Throws LayoutError for curves that make no quads of the region, Error{InvalidInput} if the quads are no disk or the pattern does not fit it, Error{Internal} if no map is found: then
+// `map` is as it was.
+LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const RegionRepatch& region, const Progress& progress);
+
+}  // namespace hybrid_mesh
