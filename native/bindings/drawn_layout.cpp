@@ -117,7 +117,8 @@ FilledLayout make_layout(const Drawing& drawing, Context& context) {
   const Progress progress(context);
   progress.stage("layout");
   FilledLayout filled;
-  filled.drawn = make_layout(repair(drawing.soup, RepairOptions(), report, progress.part(0, 0.2)), drawing.strokes, drawing.options, progress.part(0.2, 1));
+  filled.drawn =
+      make_layout(repair(drawing.soup, RepairOptions(), report, progress.part(0, 0.2)), drawing.strokes, drawing.options, progress.part(0.2, 1));
   for (const DiskLayout& filling : find_fillings(filled.drawn.layout, {}, progress)) filled.quads.push_back(static_cast<int>(filling.quads.size()));
   return filled;
 }
@@ -150,8 +151,9 @@ py::dict layout_plan(const py::object& points, const py::object& faces, const py
 
 std::shared_ptr<PythonJob> start_layout_plan(const py::object& points, const py::object& faces, const py::iterable& strokes, double snap) {
   auto planned = std::make_shared<FilledLayout>();  // written by the job's thread until it is done
-  return start_job([drawing = drawing_from_python(points, faces, strokes, snap), planned](Context& context) { *planned = plan_layout(drawing, context); },
-                   [planned]() -> py::object { return to_dict_with_plan(*planned); });
+  return start_job(
+      [drawing = drawing_from_python(points, faces, strokes, snap), planned](Context& context) { *planned = plan_layout(drawing, context); },
+      [planned]() -> py::object { return to_dict_with_plan(*planned); });
 }
 
 }  // namespace
@@ -173,7 +175,8 @@ py::list to_list(const std::vector<LayoutProblem>& problems) {
 void bind_drawn_layout(py::module_& module) {
   using py::arg;
   module.def("make_layout", &make_layout_from_arrays, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,
-             "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces, quads and problems. A stroke is a dict of points (n, 3) and fit, 'tight' or "
+             "Makes a patch layout of strokes drawn on or near a mesh: a dict of nodes (n, 3), curves, faces, quads and problems. A stroke is a dict "
+             "of points (n, 3) and fit, 'tight' or "
              "'drawn'; snap is a fraction of the bounding-box diagonal. A face is its sides (curve, forward), counter-clockwise; quads says "
              "how many each face is filled with, 0 where it cannot be.");
   module.def("layout_plan", &layout_plan, arg("points"), arg("faces"), arg("strokes"), arg("snap") = DrawnLayoutOptions().snap,

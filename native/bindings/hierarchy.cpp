@@ -147,7 +147,8 @@ struct OperationRecord {
 
 OperationRecord record_of(const HybridMesh& mesh, const std::vector<int>& plan_root, int operation) {
   if (operation < 0 || operation >= mesh.operation_count())
-    throw Error(ErrorCode::InvalidInput, "there is no operation " + std::to_string(operation) + ": the hierarchy has " + std::to_string(mesh.operation_count()));
+    throw Error(ErrorCode::InvalidInput,
+                "there is no operation " + std::to_string(operation) + ": the hierarchy has " + std::to_string(mesh.operation_count()));
   const std::vector<int> number = root_numbers(mesh, plan_root);
   const Repatch& repatch = mesh.operation(operation).repatch;
   OperationRecord record{repatch.kind, repatch.level, {}, template_of(mesh, operation), {}};
@@ -191,11 +192,14 @@ void bind_hierarchy(py::module_& module) {
       .def("level", &level, arg("name"), "The mesh of a level, as a dict of arrays.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def_property_readonly(
-          "operation_count", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, [](const HybridMesh& mesh) { return mesh.operation_count(); }); },
+          "operation_count",
+          [](const PythonHierarchy& hierarchy) { return locked(hierarchy, [](const HybridMesh& mesh) { return mesh.operation_count(); }); },
           "How many irregular operations there are.")
       .def("operation", &operation, arg("number"),
-           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, and its new_quads, numbered as a template in a plan: nodes 0 .. corners - 1 are the "
-           "region's corners from the side start, (address, side), on. Where it does not replace a disk by a disk, corners is 0, start None and new_quads empty.")
+           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, and its new_quads, numbered as a template in a "
+           "plan: nodes 0 .. corners - 1 are the "
+           "region's corners from the side start, (address, side), on. Where it does not replace a disk by a disk, corners is 0, start None and "
+           "new_quads empty.")
       .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")
       .def_property_readonly("metadata", &PythonHierarchy::metadata, "The JSON text that was saved with it.")
       .def(

@@ -24,7 +24,7 @@ class PythonHierarchy {
   }
 
   const std::vector<int>& plan_root() const { return shared_->plan_root; }  // to be read inside locked() alone
-  const std::string& metadata() const { return metadata_; }  // JSON text kept in the file
+  const std::string& metadata() const { return metadata_; }                 // JSON text kept in the file
 
   // Calls function(const HybridMesh&), one caller at a time: sampling remembers where it was, and Python's other threads may go on.
   template <typename Function>
@@ -33,7 +33,8 @@ class PythonHierarchy {
     return function(*shared_->mesh);
   }
 
-  // Puts function(const HybridMesh&), which has the same nodes and perhaps more, in the hierarchy's place. If the function throws, nothing has changed.
+  // Puts function(const HybridMesh&), which has the same nodes and perhaps more, in the hierarchy's place. If the function throws, nothing has
+  // changed.
   template <typename Function>
   void replace(Function&& function) {
     const std::lock_guard lock(shared_->mutex);
@@ -48,7 +49,8 @@ class PythonHierarchy {
     shared_->sources.reset();
   }
 
-  // The mesh that make(const HybridMesh&) takes out of the hierarchy, with what Blender shows of it: no other thread changes the hierarchy in between.
+  // The mesh that make(const HybridMesh&) takes out of the hierarchy, with what Blender shows of it: no other thread changes the hierarchy in
+  // between.
   template <typename Make>
   AnnotatedMesh annotated(Make&& make) const {
     const std::lock_guard lock(shared_->mutex);

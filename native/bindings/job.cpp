@@ -48,7 +48,8 @@ LiveJobs& live_jobs() {
 
 std::shared_ptr<PythonJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
   auto result = std::make_shared<RemeshResult>();  // written by the job's thread until it is done
-  return start_job([input = soup_from_arrays(points, offsets, indices), options = remesh_options_from_dict(settings), result](Context& context) { *result = remesh(input, options, context); },
+  return start_job([input = soup_from_arrays(points, offsets, indices), options = remesh_options_from_dict(settings),
+                    result](Context& context) { *result = remesh(input, options, context); },
                    [result, made = std::optional<PythonResult>()]() mutable {
                      if (!made) made.emplace(result);
                      return py::cast(*made);

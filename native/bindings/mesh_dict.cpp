@@ -120,7 +120,8 @@ void add_addresses(const HybridMesh& hierarchy, const std::vector<int>& plan_roo
   for (std::size_t f = 0; f < annotated.mesh.face_count(); ++f) {
     std::int32_t path = 0, digit = 1;
     int node = annotated.mesh.node[f];
-    for (; !hierarchy.is_root(node); node = hierarchy.parent(node), digit *= 4) path += digit * (node - hierarchy.first_child(hierarchy.parent(node)));
+    for (; !hierarchy.is_root(node); node = hierarchy.parent(node), digit *= 4)
+      path += digit * (node - hierarchy.first_child(hierarchy.parent(node)));
     annotated.root.push_back(number[node]);
     annotated.path.push_back(path + digit);
   }

@@ -108,7 +108,8 @@ the hierarchy is worked on, but not when it is saved and loaded.)";
 void bind_modelling(py::module_& module) {
   using py::arg;
   auto type = py::reinterpret_borrow<py::class_<PythonHierarchy>>(module.attr("Hierarchy"));
-  type.def(py::init(&from_quads), arg("points"), arg("quads"), "A hierarchy of one level, N0: points (n, 3) and quads (m, 4), counter-clockwise, that are a 2-manifold.")
+  type.def(py::init(&from_quads), arg("points"), arg("quads"),
+           "A hierarchy of one level, N0: points (n, 3) and quads (m, 4), counter-clockwise, that are a 2-manifold.")
       .def("refine", &refine_to, arg("level"), kRefine)
       .def("boundary", &boundary_of, arg("quads"), arg("start") = py::none(), kBoundary);
   const auto def_operation = [&](const char* name, const auto& function, const char* what, const auto&... arguments) {
@@ -128,7 +129,9 @@ void bind_modelling(py::module_& module) {
       kConnect, arg("region_a"), arg("region_b"), arg("turn") = 0);
   def_operation(
       "open_boundary",
-      [](PythonHierarchy& hierarchy, const Quads& quads) { return change_by(hierarchy, [&](const HybridMesh& mesh) { return open_boundary(mesh, quads); }); },
+      [](PythonHierarchy& hierarchy, const Quads& quads) {
+        return change_by(hierarchy, [&](const HybridMesh& mesh) { return open_boundary(mesh, quads); });
+      },
       kOpenBoundary, arg("quads"));
   def_operation(
       "free_layout",

@@ -132,7 +132,8 @@ int HybridMesh::depth() const {
   return depth;
 }
 
-// The level from which on the meshes of all levels are that of the leaves: one below depth() where the deepest refined quads have lost all their children.
+// The level from which on the meshes of all levels are that of the leaves: one below depth() where the deepest refined quads have lost all their
+// children.
 int HybridMesh::deepest_level() const {
   int deepest = 0;
   for (const Node& node : nodes_)

@@ -16,8 +16,8 @@ namespace {
 
 using Side = Repatch::Side;
 
-constexpr int kMostQuads = 1 << 20;   // of one operation: takes 1.5 GB
-constexpr int kFewestSides = 4;       // of a boundary that a ring of quads can stand on without joining two vertices twice
+constexpr int kMostQuads = 1 << 20;  // of one operation: takes 1.5 GB
+constexpr int kFewestSides = 4;      // of a boundary that a ring of quads can stand on without joining two vertices twice
 
 Side patch_side(int quad, int side) {
   Side result;
@@ -157,7 +157,8 @@ OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, 
     for (int k = 0; k < n; ++k) {
       const SideLink lid = top.at(region.boundary[k]);
       repatch.quads.push_back({corner(ring, k), corner(ring, k + 1), corner(ring + 1, k + 1), corner(ring + 1, k)});
-      repatch.sides.push_back({ring == 0 ? outer_side(region.boundary[k]) : patch_side(ring_quad(ring - 1, k), 2), patch_side(ring_quad(ring, k + 1), 3),
+      repatch.sides.push_back({ring == 0 ? outer_side(region.boundary[k]) : patch_side(ring_quad(ring - 1, k), 2),
+                               patch_side(ring_quad(ring, k + 1), 3),
                                ring + 1 < count ? patch_side(ring_quad(ring + 1, k), 0) : patch_side(count * n + lid.node, lid.side),
                                patch_side(ring_quad(ring, k - 1), 1)});
     }
@@ -173,7 +174,8 @@ OperationDraft add_cubes(const HybridMesh& mesh, const std::vector<int>& nodes, 
       const HalfEdge h = mesh.half_edge(node, s);
       quad[s] = copy.at(mesh.corner(node, s));
       const auto across = top.find(h ^ 1);
-      sides[s] = across == top.end() ? patch_side(ring_quad(count - 1, place.at(h)), 2) : patch_side(count * n + across->second.node, across->second.side);
+      sides[s] =
+          across == top.end() ? patch_side(ring_quad(count - 1, place.at(h)), 2) : patch_side(count * n + across->second.node, across->second.side);
     }
     repatch.quads.push_back(quad);
     repatch.sides.push_back(sides);
@@ -271,16 +273,18 @@ double irregularity(int quads, bool on_boundary) {
   return off * off + (allowed ? 0 : 1000.0 * off * off);
 }
 
-// The ring between a circle of m vertices and one of n <= m (m + n even), both in the direction of the first, the ring to its left: corner 0 faces corner 0. Every vertex of
-// the smaller circle has an edge to the larger one; where it has t more, it stands at the tip of t quads with two sides each on the larger circle, whose middles have no other
-// quad. The t are chosen by dynamic programming so that vertices are as regular as can be. The circles' counts of quads are raised.
+// The ring between a circle of m vertices and one of n <= m (m + n even), both in the direction of the first, the ring to its left: corner 0 faces
+// corner 0. Every vertex of the smaller circle has an edge to the larger one; where it has t more, it stands at the tip of t quads with two sides
+// each on the larger circle, whose middles have no other quad. The t are chosen by dynamic programming so that vertices are as regular as can be. The
+// circles' counts of quads are raised.
 Tube make_ring(Circle& large, Circle& small) {
   const int m = static_cast<int>(large.corners.size()), n = static_cast<int>(small.corners.size()), surplus = (m - n) / 2;
   Tube ring;
   if (surplus > 0) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const int most = std::min(surplus, 3);
-    // best[j][u]: the first j vertices of the smaller circle with u two-sided quads among them; the next vertex faces corner j + 2 u of the larger one.
+    // best[j][u]: the first j vertices of the smaller circle with u two-sided quads among them; the next vertex faces corner j + 2 u of the larger
+    // one.
     std::vector<std::vector<double>> best(n + 1, std::vector<double>(surplus + 1, kNever));
     std::vector<std::vector<int>> choice(n + 1, std::vector<int>(surplus + 1, 0));
     best[0][0] = 0;
@@ -363,7 +367,8 @@ Tube make_tube(const Circle& start, const Circle& end, int rings, int first_new)
 }
 
 // Pairs of vertices, one of each list, that an edge of the mesh joins on a level or where only coarser quads are.
-std::set<std::pair<VertexId, VertexId>> joined_vertices(const HybridMesh& mesh, int level, const std::vector<VertexId>& a, const std::vector<VertexId>& b) {
+std::set<std::pair<VertexId, VertexId>> joined_vertices(const HybridMesh& mesh, int level, const std::vector<VertexId>& a,
+                                                        const std::vector<VertexId>& b) {
   const std::set<VertexId> in_a(a.begin(), a.end()), in_b(b.begin(), b.end());
   std::set<std::pair<VertexId, VertexId>> result;
   for (int n = 0; n < mesh.node_count(); ++n) {

@@ -32,7 +32,8 @@ std::optional<OperationTemplate> template_of(const HybridMesh& mesh, int operati
       const Repatch::Side& side = repatch.sides[q][i];
       if (side.kind == Repatch::Side::Kind::Patch) continue;
       const int a = repatch.quads[q][i], b = repatch.quads[q][(i + 1) % 4];
-      if (side.kind != Repatch::Side::Kind::Outer || a < 0 || b < 0 || !rim.count(side.half) || !next.insert({a, {b, side.half}}).second) return std::nullopt;
+      if (side.kind != Repatch::Side::Kind::Outer || a < 0 || b < 0 || !rim.count(side.half) || !next.insert({a, {b, side.half}}).second)
+        return std::nullopt;
       if (first < 0) first = a;
     }
   if (first < 0 || next.size() != rim.size()) return std::nullopt;

@@ -255,8 +255,8 @@ void HybridMesh::append(Operation op) {
   operations_.push_back(std::move(op));
 }
 
-// Two edges between the same vertices would make a level that is no mesh by its vertices alone. Of two such edges that operations made, the one of the
-// finer level finds the other; so an operation is looked at again after coarser ones.
+// Two edges between the same vertices would make a level that is no mesh by its vertices alone. Of two such edges that operations made, the one of
+// the finer level finds the other; so an operation is looked at again after coarser ones.
 std::string HybridMesh::find_double_edge(int least_level) const {
   for (const Operation& op : operations_) {
     if (!op.enabled || op.repatch.level < least_level) continue;

@@ -36,7 +36,8 @@ Transition across(int side, int other_side) {
   return t;
 }
 
-ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners) : mesh(surface.mesh), points(surface.mesh.points), chart(surface.patch) {
+ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners)
+    : mesh(surface.mesh), points(surface.mesh.points), chart(surface.patch) {
   const TriangleSurface& fine = surface.mesh;
   const int faces = static_cast<int>(fine.faces.size());
   gluing.resize(3 * faces);
@@ -94,7 +95,8 @@ ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array
   }
 }
 
-ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area, const std::vector<int>& vertex_of)
+ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
+                     const std::vector<int>& vertex_of)
     : mesh(collapsed), points(fine_points), scale(charts.scale) {
   const std::size_t halves = collapsed.origin.size();
   uv.assign(points.size(), Complex(0, 0));
@@ -113,7 +115,8 @@ ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const s
   for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f) {
     if (!charts.mesh.alive[f]) continue;
     const int h = mesh.find(vertex_of[charts.mesh.from(3 * f)], vertex_of[charts.mesh.to(3 * f)]);
-    if (h < 0 || mesh.apex(h) != vertex_of[charts.mesh.apex(3 * f)]) throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
+    if (h < 0 || mesh.apex(h) != vertex_of[charts.mesh.apex(3 * f)])
+      throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
     chart[h / 3] = charts.chart[f];
     for (int i = 0, g = h; i < 3; ++i, g = EditMesh::next(g)) {
       corner[g] = charts.corner[3 * f + i];
@@ -155,7 +158,8 @@ const FlatTriangle& ChartMesh::flat(int f) const {
   if (flat_.size() != chart.size()) flat_.resize(chart.size());
   Flat& known = flat_[f];
   const std::array<int, 3> corners{mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]};
-  if (known.corners != corners || known.scale != scale) known = {corners, scale, flatten(points[corners[0]], points[corners[1]], points[corners[2]], scale)};
+  if (known.corners != corners || known.scale != scale)
+    known = {corners, scale, flatten(points[corners[0]], points[corners[1]], points[corners[2]], scale)};
   return known.triangle;
 }
 

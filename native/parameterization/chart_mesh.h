@@ -18,10 +18,14 @@ struct Transition {
   Complex operator()(const Complex& z) const { return rotate(z) + Complex(x, y); }
   Complex rotate(const Complex& z) const {
     switch (turns & 3) {
-      case 0: return z;
-      case 1: return {-z.imag(), z.real()};
-      case 2: return -z;
-      default: return {z.imag(), -z.real()};
+      case 0:
+        return z;
+      case 1:
+        return {-z.imag(), z.real()};
+      case 2:
+        return -z;
+      default:
+        return {z.imag(), -z.real()};
     }
   }
   Complex rotate_back(const Complex& z) const { return Transition{static_cast<std::int8_t>((4 - turns) & 3), 0, 0}.rotate(z); }
@@ -35,8 +39,9 @@ Transition operator*(const Transition& a, const Transition& b);  // first b, the
 Transition across(int side, int other_side);
 
 // A triangle mesh whose faces lie in charts of the integer grid, glued by transitions: a piecewise linear map to the base domain that knows no patch
-// boundaries. A vertex has a position in a frame of its own, and each of its corners the transition from that frame to the face's chart. Around a cone (an irregular base node) no frame
-// closes: its position is 0 and its corners' transitions carry the grid points it is pinned to. Every triangle is counter-clockwise in its chart at all times.
+// boundaries. A vertex has a position in a frame of its own, and each of its corners the transition from that frame to the face's chart. Around a
+// cone (an irregular base node) no frame closes: its position is 0 and its corners' transitions carry the grid points it is pinned to. Every triangle
+// is counter-clockwise in its chart at all times.
 class ChartMesh {
  public:
   enum class Kind : std::uint8_t { Free, SlideU, SlideV, Pinned, Cone };  // Slide: a boundary vertex that keeps its other coordinate
@@ -45,23 +50,26 @@ class ChartMesh {
   // From patches mapped to unit squares, (u, v) a face's corner.
   ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners);
 
-  // The same charts over another mesh with the same triangles: one that was collapsed from a finer surface of area `fine_area`, whose points are `fine_points`. `vertex_of`: per vertex
-  // of `charts` that is alive its vertex there. What was collapsed comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
-  ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area, const std::vector<int>& vertex_of);
+  // The same charts over another mesh with the same triangles: one that was collapsed from a finer surface of area `fine_area`, whose points are
+  // `fine_points`. `vertex_of`: per vertex of `charts` that is alive its vertex there. What was collapsed comes back by undo_collapse(). Throws
+  // Error{Internal} if the triangles differ.
+  ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
+            const std::vector<int>& vertex_of);
 
   // The charts of the patches' quadrants, in the order of quadrisected(): all coordinates are doubled.
   void quadrisect();
 
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
-  const FlatTriangle& flat(int f) const;  // remembered until the face or the scale changes
+  const FlatTriangle& flat(int f) const;      // remembered until the face or the scale changes
   void move_point(int v, const Vec3& place);  // on the surface
-  double determinant(int f) const;  // of the map from the flattened triangle
-  double angle_at(int v) const;     // sum of the triangles' angles in the charts
+  double determinant(int f) const;            // of the map from the flattened triangle
+  double angle_at(int v) const;               // sum of the triangles' angles in the charts
 
   bool can_collapse(int h) const;  // keeps cones, pinned vertices and boundaries; says nothing of the map
   void collapse(int h);
-  // Puts from(h) back, at a place where its triangles are counter-clockwise. Returns false if there is none: the vertex is back, but its star is folded.
+  // Puts from(h) back, at a place where its triangles are counter-clockwise. Returns false if there is none: the vertex is back, but its star is
+  // folded.
   bool undo_collapse(int h);
 
   // Walks around v: outgoing half-edge h of each face, neighbours in v's frame. v must not be a cone.
@@ -75,13 +83,13 @@ class ChartMesh {
   }
 
   EditMesh mesh;
-  std::vector<Vec3> points;         // changed by move_point() alone
-  std::vector<Complex> uv;          // per vertex, in its own frame
-  std::vector<Kind> kind;           // per vertex
-  std::vector<int> chart;           // per face: the patch whose square its chart continues
-  std::vector<Transition> corner;   // per half-edge h: from the frame of from(h) to the chart of h's face
-  std::vector<Transition> gluing;   // per half-edge: from the chart of its face to that of the face across
-  double scale = 1;                 // lengths are scaled so that the surface's area is the number of patches
+  std::vector<Vec3> points;        // changed by move_point() alone
+  std::vector<Complex> uv;         // per vertex, in its own frame
+  std::vector<Kind> kind;          // per vertex
+  std::vector<int> chart;          // per face: the patch whose square its chart continues
+  std::vector<Transition> corner;  // per half-edge h: from the frame of from(h) to the chart of h's face
+  std::vector<Transition> gluing;  // per half-edge: from the chart of its face to that of the face across
+  double scale = 1;                // lengths are scaled so that the surface's area is the number of patches
 
  private:
   bool place(int v);

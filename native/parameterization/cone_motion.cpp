@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Based on: Khodakovsky, Litke, Schroeder, Globally smooth parameterizations with low distortion, 2003 (moving patch corners); Floater, Mean value coordinates, 2003.
+// Based on: Khodakovsky, Litke, Schroeder, Globally smooth parameterizations with low distortion, 2003 (moving patch corners); Floater, Mean value
+// coordinates, 2003.
 #include "parameterization/cone_motion.h"
 
 #include <Eigen/LU>
@@ -12,9 +13,11 @@ namespace {
 
 class ConeMotion {
  public:
-  ConeMotion(ChartMesh& charts, const Distortion& density, const std::vector<char>& allowed) : c_(charts), relaxation_(charts, density), allowed_(allowed) {}
+  ConeMotion(ChartMesh& charts, const Distortion& density, const std::vector<char>& allowed)
+      : c_(charts), relaxation_(charts, density), allowed_(allowed) {}
 
-  // Moves the cone where that lowers the energy; with `evict` moves it anyway, if a neighbour can take it. Returns the vertex that it moved to, or -1.
+  // Moves the cone where that lowers the energy; with `evict` moves it anyway, if a neighbour can take it. Returns the vertex that it moved to, or
+  // -1.
   int try_move(int cone, bool evict) {
     // Another cone or the boundary may be too near for a large disc.
     if (!build_disc(cone, 3) && !build_disc(cone, 2)) return -1;
@@ -258,7 +261,7 @@ class ConeMotion {
   const std::vector<char>& allowed_;
   std::vector<Member> members_;  // the cone, then ring by ring
   std::unordered_map<int, int> index_;
-  std::size_t inner_ = 0;        // members before the rim
+  std::size_t inner_ = 0;  // members before the rim
   std::vector<int> faces_;
   std::unordered_map<int, Complex> pins_;    // per face: the cone's place in its chart, developed
   std::unordered_map<int, double> offsets_;  // per face: from its chart's angles to developed ones
@@ -278,6 +281,8 @@ int move_cones(ChartMesh& charts, const Distortion& density, const std::vector<c
   return moved;
 }
 
-int evict_cone(ChartMesh& charts, const Distortion& density, int cone, const std::vector<char>& allowed) { return ConeMotion(charts, density, allowed).try_move(cone, true); }
+int evict_cone(ChartMesh& charts, const Distortion& density, int cone, const std::vector<char>& allowed) {
+  return ConeMotion(charts, density, allowed).try_move(cone, true);
+}
 
 }  // namespace hybrid_mesh

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Based on: Tutte, How to draw a graph, 1963; Floater, Mean value coordinates, 2003 (the weights, here made symmetric); Yoshizawa, Belyaev, Seidel, A fast and simple
-// stretch-minimizing mesh parameterization, 2004 (weights by stretch).
+// Based on: Tutte, How to draw a graph, 1963; Floater, Mean value coordinates, 2003 (the weights, here made symmetric); Yoshizawa, Belyaev, Seidel, A
+// fast and simple stretch-minimizing mesh parameterization, 2004 (weights by stretch).
 #include "parameterization/convex_map.h"
 
 #include <Eigen/Geometry>
@@ -55,7 +55,8 @@ class ConvexMap::Embedding {
  public:
   enum class Weights { MeanValue, SquareRoot, Uniform };
 
-  Embedding(ConvexMap& of, const std::vector<int>& faces, const std::vector<DiskSide>& sides, const std::vector<Vec2>& polygon) : mesh_(of.mesh_), index_(of.index_), faces_(faces) {
+  Embedding(ConvexMap& of, const std::vector<int>& faces, const std::vector<DiskSide>& sides, const std::vector<Vec2>& polygon)
+      : mesh_(of.mesh_), index_(of.index_), faces_(faces) {
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const std::vector<double> fractions = sides[i].fractions.empty() ? of.arc_fractions(sides[i].points) : sides[i].fractions;
       const Vec2 begin = polygon[i], along = polygon[(i + 1) % polygon.size()] - begin;
@@ -88,7 +89,9 @@ class ConvexMap::Embedding {
         if (kind != Weights::Uniform) {
           const Vec3 ij = place(j) - place(i);
           const double l = std::max(ij.norm(), 1e-12);
-          const auto half_tangent = [&](const Vec3& x, const Vec3& y) { return std::tan(0.5 * std::min(std::atan2(x.cross(y).norm(), x.dot(y)), 3.1)); };
+          const auto half_tangent = [&](const Vec3& x, const Vec3& y) {
+            return std::tan(0.5 * std::min(std::atan2(x.cross(y).norm(), x.dot(y)), 3.1));
+          };
           w = (half_tangent(ij, place(c) - place(i)) * mean[i] / count[i] + half_tangent(-ij, place(c) - place(j)) * mean[j] / count[j]) / l;
           w = std::clamp(w, 1e-6, 1e6);
           if (kind == Weights::SquareRoot) w = std::sqrt(w);
@@ -166,7 +169,8 @@ class ConvexMap::Embedding {
   int rim_ = 0;
 };
 
-bool ConvexMap::operator()(const std::vector<int>& faces, const std::vector<DiskSide>& sides, const std::vector<Vec2>& polygon, std::vector<std::array<Vec2, 3>>& corners) {
+bool ConvexMap::operator()(const std::vector<int>& faces, const std::vector<DiskSide>& sides, const std::vector<Vec2>& polygon,
+                           std::vector<std::array<Vec2, 3>>& corners) {
   index_.resize(mesh_.points.size(), -1);
   Embedding embedding(*this, faces, sides, polygon);
   using Weights = Embedding::Weights;

@@ -27,11 +27,11 @@ class KeptMap {
   std::vector<Vertex> kept_;
 };
 
-constexpr int kRings = 3;           // around a move, where the map may give
-constexpr int kMostOthers = 3;      // corners in the way that move on
-constexpr int kPatience = 8;        // sweeps to unfold a move that is only tried
+constexpr int kRings = 3;       // around a move, where the map may give
+constexpr int kMostOthers = 3;  // corners in the way that move on
+constexpr int kPatience = 8;    // sweeps to unfold a move that is only tried
 constexpr double kLeastGain = 1e-4;
-constexpr double kThin = 1e-9;      // determinant below which an energy is a rounding error
+constexpr double kThin = 1e-9;  // determinant below which an energy is a rounding error
 
 }  // namespace
 
@@ -65,7 +65,8 @@ int CornerMotion::move(int corner, bool forward, int sweeps, int others) {
   std::vector<int> region{corner, u};
   c_.mesh.grow(region, kRings);
   const KeptMap kept(c_, region);
-  const Complex place = c_.uv[corner], behind = forward ? c_.corner[last].back(c_.at(EditMesh::prev(last))) : c_.corner[first].back(c_.at(EditMesh::next(first)));
+  const Complex place = c_.uv[corner],
+                behind = forward ? c_.corner[last].back(c_.at(EditMesh::prev(last))) : c_.corner[first].back(c_.at(EditMesh::next(first)));
   c_.uv[u] = c_.corner[leaves].back(c_.at(forward ? first : last));
   c_.kind[u] = ChartMesh::Kind::Pinned;
   const bool along_u = std::abs((behind - place).real()) > std::abs((behind - place).imag());

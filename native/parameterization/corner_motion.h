@@ -18,11 +18,12 @@ class CornerMotion {
   // The neighbour of a boundary vertex along it: the surface is on the left of the way forward.
   int next(int v, bool forward) const;
 
-  // The next vertex becomes the corner in its place, and the corner a vertex of the side that is longer now. A corner in the way moves on first. Returns the vertex, or -1 where the map
-  // does not unfold in so many sweeps.
+  // The next vertex becomes the corner in its place, and the corner a vertex of the side that is longer now. A corner in the way moves on first.
+  // Returns the vertex, or -1 where the map does not unfold in so many sweeps.
   int move(int corner, bool forward, int sweeps = 24) { return move(corner, forward, sweeps, 0); }
 
-  // Moves those of the corners for which that lowers the energy; returns where to. `allowed`: per vertex whether it may become a corner (empty: all may).
+  // Moves those of the corners for which that lowers the energy; returns where to. `allowed`: per vertex whether it may become a corner (empty: all
+  // may).
   std::vector<int> move_downhill(const std::vector<int>& corners, const std::vector<char>& allowed);
 
   // The corners near v go along the boundary, a few vertices to either side, until done(corner). Returns whether that was.

@@ -15,14 +15,15 @@ namespace hybrid_mesh {
 
 using Complex = std::complex<double>;
 
-// A triangle's flat shape: the linear map p -> (f_z, f_zbar) = (sum alpha_c p_c, sum conj(alpha_c) p_c) of complex corner positions p_c, and its area.
+// A triangle's flat shape: the linear map p -> (f_z, f_zbar) = (sum alpha_c p_c, sum conj(alpha_c) p_c) of complex corner positions p_c, and its
+// area.
 struct FlatTriangle {
   std::array<Complex, 3> alpha;
   double area = 0;
 };
 
-// Lays a triangle of the surface flat, scaled by `scale`. Heights of slivers are floored at 2 % of their longest side: their exact shape does not matter for the map's quality,
-// but an unbounded gradient would.
+// Lays a triangle of the surface flat, scaled by `scale`. Heights of slivers are floored at 2 % of their longest side: their exact shape does not
+// matter for the map's quality, but an unbounded gradient would.
 inline FlatTriangle flatten(const Vec3& a, const Vec3& b, const Vec3& c, double scale) {
   const std::array<Vec3, 3> p{a, b, c};
   std::array<double, 3> length;
@@ -46,8 +47,8 @@ inline FlatTriangle flatten(const Vec3& a, const Vec3& b, const Vec3& c, double 
   return t;
 }
 
-// An energy density of the singular values with a barrier at folding: (1 - theta) times the mean of their ratio and its inverse, plus theta times the mean of the area's ratio and
-// its inverse. Least (1) for isometries. theta in [0, 1]: small for right angles, large for even size.
+// An energy density of the singular values with a barrier at folding: (1 - theta) times the mean of their ratio and its inverse, plus theta times the
+// mean of the area's ratio and its inverse. Least (1) for isometries. theta in [0, 1]: small for right angles, large for even size.
 struct Distortion {
   double theta = 0.05;
 
@@ -62,11 +63,17 @@ struct Distortion {
   Derivatives operator()(double s, double t) const {
     const double d = s - t, i = 1 / d, i2 = i * i, i3 = i2 * i, m = 1 - theta;
     const double g = 0.5 * theta * (1 - i2), gg = theta * i3;
-    return {m * (s + t) * i + 0.5 * theta * (d + i), -2 * m * t * i2 + g, 2 * m * s * i2 - g, 4 * m * t * i3 + gg, -2 * m * (s + t) * i3 - gg, 4 * m * s * i3 + gg};
+    return {m * (s + t) * i + 0.5 * theta * (d + i),
+            -2 * m * t * i2 + g,
+            2 * m * s * i2 - g,
+            4 * m * t * i3 + gg,
+            -2 * m * (s + t) * i3 - gg,
+            4 * m * s * i3 + gg};
   }
 };
 
-// The Hessian of a density with respect to (f_z, f_zbar) = (a, b): 2 Psi_s and 2 Psi_t across a and b, and a block in the plane of their directions. Its negative eigenvalues are removed.
+// The Hessian of a density with respect to (f_z, f_zbar) = (a, b): 2 Psi_s and 2 Psi_t across a and b, and a block in the plane of their directions.
+// Its negative eigenvalues are removed.
 struct ProjectedHessian {
   Complex ua{1, 0}, ub{1, 0};  // directions of a and b
   double across_a, across_b, aa, ab, bb;
@@ -108,7 +115,8 @@ struct ProjectedHessian {
     const Eigen::Vector2d v(p.real(), p.imag()), w(q.real(), q.imag());
     const double xx = across_a * v.y() * v.y() + across_b * w.y() * w.y() + aa * v.x() * v.x() + 2 * ab * v.x() * w.x() + bb * w.x() * w.x();
     const double yy = across_a * v.x() * v.x() + across_b * w.x() * w.x() + aa * v.y() * v.y() + 2 * ab * v.y() * w.y() + bb * w.y() * w.y();
-    const double xy = -across_a * v.x() * v.y() - across_b * w.x() * w.y() + aa * v.x() * v.y() + ab * (v.x() * w.y() + v.y() * w.x()) + bb * w.x() * w.y();
+    const double xy =
+        -across_a * v.x() * v.y() - across_b * w.x() * w.y() + aa * v.x() * v.y() + ab * (v.x() * w.y() + v.y() * w.x()) + bb * w.x() * w.y();
     Eigen::Matrix2d h;
     h << xx, xy, xy, yy;
     return h;

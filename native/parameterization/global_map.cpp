@@ -22,7 +22,8 @@ constexpr const char* kCutStays = "a cut of the surface cannot be undone in the 
 
 class MapSmoothing {
  public:
-  MapSmoothing(ChartMesh& charts, const GlobalMapOptions& options) : c_(charts), options_(options), density_{options.theta}, stars_(charts, density_), corners_(charts, density_) {}
+  MapSmoothing(ChartMesh& charts, const GlobalMapOptions& options)
+      : c_(charts), options_(options), density_{options.theta}, stars_(charts, density_), corners_(charts, density_) {}
 
   GlobalMapReport smooth(const PatchedSurface& surface, const Progress& progress) {
     progress.check();
@@ -111,7 +112,8 @@ class MapSmoothing {
   }
   bool is_inserted(int v) const { return source_[v].vertices[1] >= 0; }
 
-  // A point inside an edge or a face of the surface that was cut goes to a neighbour on the same edge or face: the surface stays the same set of points.
+  // A point inside an edge or a face of the surface that was cut goes to a neighbour on the same edge or face: the surface stays the same set of
+  // points.
   bool merges_in_place(int h) const {
     const PointSource& p = source_[c_.mesh.from(h)];
     const PointSource& q = source_[c_.mesh.to(h)];
@@ -139,7 +141,8 @@ class MapSmoothing {
       if (!(signed_area > least_determinant * 0.5 * area * c_.scale * c_.scale)) good = false;
       fan += std::arg((b - target) * std::conj(a - target));
     });
-    // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen, and u become such a cone.
+    // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen, and u become
+    // such a cone.
     return good && fan < (c_.kind[u] == ChartMesh::Kind::Cone ? 3.0 : 4.0);
   }
 
@@ -168,7 +171,8 @@ class MapSmoothing {
         int h = c_.mesh.out[v];
         do {
           const double l = (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm();
-          if (l < shortest && merges_in_place(h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape) && (least_shape < 0 || keeps_area(h)))
+          if (l < shortest && merges_in_place(h) && c_.can_collapse(h) && collapse_keeps_map(h, least_determinant, least_shape) &&
+              (least_shape < 0 || keeps_area(h)))
             shortest = l, best = h;
           if (c_.mesh.is_boundary(v)) break;
           h = c_.mesh.ccw(h);
@@ -183,7 +187,8 @@ class MapSmoothing {
     }
   }
 
-  // A cone at an inserted point takes the place of a neighbour, a point of the surface: that is merged into it, and its name and place on the surface go over.
+  // A cone at an inserted point takes the place of a neighbour, a point of the surface: that is merged into it, and its name and place on the surface
+  // go over.
   void settle(int cone) {
     if (!is_inserted(cone)) return;
     std::vector<std::pair<double, int>> halves;
@@ -221,7 +226,8 @@ class MapSmoothing {
     if (next < 0) throw Error(ErrorCode::Internal, "an irregular node of the base cannot be moved to a vertex");
   }
 
-  // A corner of the base on the boundary that is inside an edge of the surface goes to one of the edge's ends, the nearer one if the map unfolds there.
+  // A corner of the base on the boundary that is inside an edge of the surface goes to one of the edge's ends, the nearer one if the map unfolds
+  // there.
   void settle_corner(int corner) {
     const auto length_to = [&](int v) { return (c_.points[v] - c_.points[corner]).norm(); };
     const bool onward = length_to(corners_.next(corner, true)) < length_to(corners_.next(corner, false));
@@ -233,10 +239,11 @@ class MapSmoothing {
     throw Error(ErrorCode::Internal, "a corner of the base on the boundary cannot be moved to a vertex");
   }
 
-  // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones and corners of the boundary
-  // near it, which may ask a triangle for an angle that none can have, give way.
+  // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones and
+  // corners of the boundary near it, which may ask a triangle for an angle that none can have, give way.
   void merge_by_force(const Progress& progress) {
-    // Where it can be done at all, it has taken up to 60 relaxations a vertex. Where triangles are too long for the map to be linear on them, thousands of points resist.
+    // Where it can be done at all, it has taken up to 60 relaxations a vertex. Where triangles are too long for the map to be linear on them,
+    // thousands of points resist.
     const std::int64_t most = stars_.relaxed_folded() + 100 * static_cast<std::int64_t>(c_.mesh.vertex_count);
     for (int pass = 0; pass < 8; ++pass) {
       progress.check();
@@ -355,7 +362,8 @@ class MapSmoothing {
         } while (h >= 0 && h != c_.mesh.out[v]);
         order.push_back({shortest, v});
       }
-      std::sort(order.begin(), order.end(), [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.vertex < b.vertex; });
+      std::sort(order.begin(), order.end(),
+                [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.vertex < b.vertex; });
       // Only the shorter half: a pass over independent stars must not reach for long edges while short ones are locked.
       order.resize((order.size() + 1) / 2);
       const std::size_t before = log_.size();
@@ -467,7 +475,8 @@ class MapSmoothing {
     }
   }
 
-  // Relaxes a vertex that has just come back, and where its triangles are squeezed its neighbours with it: the next ones to come back there would be squeezed more and more.
+  // Relaxes a vertex that has just come back, and where its triangles are squeezed its neighbours with it: the next ones to come back there would be
+  // squeezed more and more.
   void make_room(int v) {
     std::vector<int> ring;
     for (int tries = 0; tries < 6; ++tries) {
@@ -519,7 +528,8 @@ class MapSmoothing {
     std::vector<Eigen::Triplet<double>> entries;
     const auto energy_now = [&] {
       double sum = 0;
-      for (std::size_t i = 0; i < faces.size(); ++i) sum += stars_.triangle_energy(flat[i], c_.at(3 * faces[i]), c_.at(3 * faces[i] + 1), c_.at(3 * faces[i] + 2));
+      for (std::size_t i = 0; i < faces.size(); ++i)
+        sum += stars_.triangle_energy(flat[i], c_.at(3 * faces[i]), c_.at(3 * faces[i] + 1), c_.at(3 * faces[i] + 2));
       return sum;
     };
     for (int step = 0; step < steps; ++step) {

@@ -7,12 +7,12 @@
 namespace hybrid_mesh {
 
 struct GlobalMapOptions {
-  double theta = 0.5;             // see Distortion: small for right angles, large for even size
-  double vertices_a_quad = 15;    // of the coarse mesh on which the map is found
+  double theta = 0.5;           // see Distortion: small for right angles, large for even size
+  double vertices_a_quad = 15;  // of the coarse mesh on which the map is found
   int newton_steps = 15;
-  int cone_rounds = 10;           // of moving irregular nodes on the coarse mesh, at most
-  bool corners_move = true;       // irregular nodes on the boundary, along it
-  int sweeps = 3;                 // of vertex-wise relaxation a level, on the way back to the fine mesh
+  int cone_rounds = 10;      // of moving irregular nodes on the coarse mesh, at most
+  bool corners_move = true;  // irregular nodes on the boundary, along it
+  int sweeps = 3;            // of vertex-wise relaxation a level, on the way back to the fine mesh
 };
 
 struct GlobalMapReport {
@@ -20,13 +20,14 @@ struct GlobalMapReport {
   double energy_before = 0, energy_coarse = 0, energy = 0;  // means over the area; 1 is an isometry
 };
 
-// Makes the map smooth across patches, even and right-angled: descends a barrier energy over all patches at once on a collapsed copy, and carries the result back to
-// the fine mesh level by level. Bijectivity holds throughout: no step may fold a triangle. Points of `surface` that were inserted by cutting are merged
-// away where the map allows (the surface stays the same set of points). Patch sides move with the map: afterwards `surface` is of no use.
+// Makes the map smooth across patches, even and right-angled: descends a barrier energy over all patches at once on a collapsed copy, and carries the
+// result back to the fine mesh level by level. Bijectivity holds throughout: no step may fold a triangle. Points of `surface` that were inserted by
+// cutting are merged away where the map allows (the surface stays the same set of points). Patch sides move with the map: afterwards `surface` is of
+// no use.
 GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
 
-// Merges all points of `surface` that were inserted by cutting, and moves cones from them to a neighbour: the charts' triangles are those of the surface that was cut. Returns the
-// point of that surface for each vertex that is alive. Throws Error{Internal} where the map refuses.
+// Merges all points of `surface` that were inserted by cutting, and moves cones from them to a neighbour: the charts' triangles are those of the
+// surface that was cut. Returns the point of that surface for each vertex that is alive. Throws Error{Internal} where the map refuses.
 std::vector<int> uncut_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
 
 // Undoes the half-edge collapses in `log`, last one first, and smooths the map on the way.

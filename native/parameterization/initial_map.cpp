@@ -11,8 +11,8 @@ namespace hybrid_mesh {
 namespace {
 
 // Where the points of a side lie on it, in its own direction, by the map of the patch across, for which it is `side`.
-std::vector<double> fractions_seen_from(const PatchedSurface& surface, const std::vector<int>& faces, const std::vector<std::array<Vec2, 3>>& corners, int side,
-                                        const std::vector<int>& points) {
+std::vector<double> fractions_seen_from(const PatchedSurface& surface, const std::vector<int>& faces, const std::vector<std::array<Vec2, 3>>& corners,
+                                        int side, const std::vector<int>& points) {
   std::vector<double> fractions(points.size(), -1);
   const double level = side == 1 || side == 2 ? 1 : 0;
   for (const int f : faces)
@@ -42,7 +42,8 @@ void map_patches(PatchedSurface& surface, const std::vector<int>& patches, std::
     for (int i = 0; i < 4; ++i) {
       sides[i].points = surface.sides[q][i];
       const PatchSide other = surface.neighbours[q][i];
-      if (other.patch >= 0 && is_given[other.patch]) sides[i].fractions = fractions_seen_from(surface, faces[other.patch], corners, other.side, sides[i].points);
+      if (other.patch >= 0 && is_given[other.patch])
+        sides[i].fractions = fractions_seen_from(surface, faces[other.patch], corners, other.side, sides[i].points);
     }
     return sides;
   };

@@ -20,10 +20,17 @@ struct GridPoint {
 GridPoint apply(const Transition& t, const GridPoint& p) {
   GridPoint r = p;
   switch (t.turns & 3) {
-    case 1: r = {-p.y, p.x}; break;
-    case 2: r = {-p.x, -p.y}; break;
-    case 3: r = {p.y, -p.x}; break;
-    default: break;
+    case 1:
+      r = {-p.y, p.x};
+      break;
+    case 2:
+      r = {-p.x, -p.y};
+      break;
+    case 3:
+      r = {p.y, -p.x};
+      break;
+    default:
+      break;
   }
   return {r.x + t.x * kOne, r.y + t.y * kOne};
 }
@@ -33,12 +40,12 @@ Wide orientation(const GridPoint& a, const GridPoint& b, const GridPoint& c) { r
 // A corner of a clipped triangle. Crossings lie on one of the square's sides: their place along it is `along` / `parts` of the grid's unit, exactly.
 struct Piece {
   enum class Kind { Vertex, Crossing, Corner } kind;
-  int index;       // Vertex: corner of the face; Crossing: edge of the face (from corner index to index + 1); Corner: of the square
-  int side = -1;   // Crossing: the square's side
-  GridPoint at;    // Vertex and Corner
-  Wide along = 0;  // Crossing: numerator ...
+  int index;               // Vertex: corner of the face; Crossing: edge of the face (from corner index to index + 1); Corner: of the square
+  int side = -1;           // Crossing: the square's side
+  GridPoint at;            // Vertex and Corner
+  Wide along = 0;          // Crossing: numerator ...
   std::int64_t parts = 1;  // ... and positive denominator of the coordinate that runs along the side (x for sides 0 and 2, y for 1 and 3)
-  int line = -1;   // what the polygon's edge to the next corner lies on: 0..2 an edge of the face, 3 + i side i
+  int line = -1;           // what the polygon's edge to the next corner lies on: 0..2 an edge of the face, 3 + i side i
 };
 
 // Signed distance to the inside of a side's line (positive inside), only its sign and zero being exact for crossings.
@@ -46,10 +53,14 @@ int side_of(const Piece& p, int side) {
   const auto sign = [](Wide w) { return (w > 0) - (w < 0); };
   if (p.kind != Piece::Kind::Crossing) {
     switch (side) {
-      case 0: return sign(p.at.y);
-      case 1: return sign(Wide(kOne) - p.at.x);
-      case 2: return sign(Wide(kOne) - p.at.y);
-      default: return sign(p.at.x);
+      case 0:
+        return sign(p.at.y);
+      case 1:
+        return sign(Wide(kOne) - p.at.x);
+      case 2:
+        return sign(Wide(kOne) - p.at.y);
+      default:
+        return sign(p.at.x);
     }
   }
   const bool along_x = p.side % 2 == 0;
@@ -77,7 +88,8 @@ class Extraction {
         const Vec2 a = m.uv[t[1]] - m.uv[t[0]], b = m.uv[t[2]] - m.uv[t[0]];
         area += 0.5 * (a.x() * b.y() - a.y() * b.x());
       }
-      if (!(std::abs(area - 1) < 1e-6)) throw Error(ErrorCode::Internal, "the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
+      if (!(std::abs(area - 1) < 1e-6))
+        throw Error(ErrorCode::Internal, "the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
     }
     progress(1);
     return std::move(maps_);
@@ -256,7 +268,8 @@ class Extraction {
           reach(x.line, next);
           continue;
         }
-        const bool known = std::any_of(visits.begin(), visits.end(), [&](const Visit& v) { return v.patch == next.patch && v.to_patch == next.to_patch; });
+        const bool known =
+            std::any_of(visits.begin(), visits.end(), [&](const Visit& v) { return v.patch == next.patch && v.to_patch == next.to_patch; });
         if (!known) visits.push_back(next);
         if (visits.size() > 64) throw Error(ErrorCode::Internal, "a face of the map spans too many base quads");
       }
@@ -291,13 +304,16 @@ class Extraction {
         case Piece::Kind::Crossing: {
           const int h = 3 * f + x.index;
           key = (std::uint64_t{1} << 60) | (static_cast<std::uint64_t>(c_.mesh.edge[h]) << 2) | static_cast<std::uint64_t>(x.side);
-          const double along = static_cast<double>(static_cast<long double>(x.along) / static_cast<long double>(x.parts) / static_cast<long double>(kOne));
+          const double along =
+              static_cast<double>(static_cast<long double>(x.along) / static_cast<long double>(x.parts) / static_cast<long double>(kOne));
           const double level = x.side == 1 || x.side == 2 ? 1 : 0;
           uv = x.side % 2 == 0 ? Vec2(along, level) : Vec2(level, along);
           // The same point whichever face asks: measured from the edge's lower vertex.
           const int a = x.index, b = (x.index + 1) % 3;
-          const std::int64_t da = x.side % 2 == 0 ? p[a].y - static_cast<std::int64_t>(level) * kOne : p[a].x - static_cast<std::int64_t>(level) * kOne;
-          const std::int64_t db = x.side % 2 == 0 ? p[b].y - static_cast<std::int64_t>(level) * kOne : p[b].x - static_cast<std::int64_t>(level) * kOne;
+          const std::int64_t da =
+              x.side % 2 == 0 ? p[a].y - static_cast<std::int64_t>(level) * kOne : p[a].x - static_cast<std::int64_t>(level) * kOne;
+          const std::int64_t db =
+              x.side % 2 == 0 ? p[b].y - static_cast<std::int64_t>(level) * kOne : p[b].x - static_cast<std::int64_t>(level) * kOne;
           const double t = static_cast<double>(da) / static_cast<double>(da - db);
           w[a] = 1 - t;
           w[b] = t;
@@ -318,7 +334,8 @@ class Extraction {
     for (std::size_t i = 0; i < n; ++i) {
       // Along a side by clipping, or because an edge of the mesh lies on it (the surface's boundary, edges between cones).
       for (int side = 0; side < 4; ++side)
-        if (side_of(polygon[i], side) == 0 && side_of(polygon[(i + 1) % n], side) == 0) borders_[visit.patch].push_back({side, points[i], points[(i + 1) % n]});
+        if (side_of(polygon[i], side) == 0 && side_of(polygon[(i + 1) % n], side) == 0)
+          borders_[visit.patch].push_back({side, points[i], points[(i + 1) % n]});
     }
     // Triangles, the best ears first.
     std::vector<int> left(n);
@@ -333,7 +350,8 @@ class Extraction {
       std::array<float, 9> s;
       int at = 0;
       for (const int i : {a, b, c})
-        for (int k = 0; k < 3; ++k) s[at++] = static_cast<float>(weights[i][0] * source[0][k] + weights[i][1] * source[1][k] + weights[i][2] * source[2][k]);
+        for (int k = 0; k < 3; ++k)
+          s[at++] = static_cast<float>(weights[i][0] * source[0][k] + weights[i][1] * source[1][k] + weights[i][2] * source[2][k]);
       map.source.push_back(s);
     };
     while (left.size() > 3) {
@@ -420,7 +438,8 @@ class Extraction {
 
 }  // namespace
 
-std::vector<PatchMap> extract_patch_maps(ChartMesh& charts, const PatchedSurface& surface, const std::vector<std::array<int, 3>>& repaired_faces, const Progress& progress) {
+std::vector<PatchMap> extract_patch_maps(ChartMesh& charts, const PatchedSurface& surface, const std::vector<std::array<int, 3>>& repaired_faces,
+                                         const Progress& progress) {
   return Extraction(charts, surface, repaired_faces).run(progress);
 }
 

@@ -28,7 +28,8 @@ std::vector<int> side_chain(const PatchMap& map, int side) {
 
 }  // namespace
 
-MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const PatchedSurface& layout, const std::vector<std::array<int, 3>>& repaired_faces) {
+MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const PatchedSurface& layout,
+                              const std::vector<std::array<int, 3>>& repaired_faces) {
   const int patches = static_cast<int>(maps.size());
   std::vector<int> offset(patches + 1, 0);
   for (int q = 0; q < patches; ++q) offset[q + 1] = offset[q] + static_cast<int>(maps[q].uv.size());

@@ -145,7 +145,8 @@ PatchedPart part_of(const PatchedSurface& surface, const std::vector<int>& patch
       std::vector<int>& local = part.surface.sides[q][i];
       for (std::size_t k = 1; k < side.size(); ++k) {
         const auto at = std::lower_bound(rim.begin(), rim.end(), std::pair(std::pair(side[k - 1], side[k]), -1));
-        if (at == rim.end() || at->first != std::pair(side[k - 1], side[k])) throw Error(ErrorCode::Internal, "a patch's side is not made of the mesh's edges");
+        if (at == rim.end() || at->first != std::pair(side[k - 1], side[k]))
+          throw Error(ErrorCode::Internal, "a patch's side is not made of the mesh's edges");
         if (k == 1) local.push_back(mesh.from(at->second));
         local.push_back(mesh.to(at->second));
       }

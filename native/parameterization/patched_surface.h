@@ -34,27 +34,31 @@ PointSource combine(const std::array<const PointSource*, 3>& points, const std::
 // Half-way between two points that lie on one face.
 PointSource middle_of(const PointSource& a, const PointSource& b);
 
-// Splits the two faces beside inner half-edge h by a point in its middle. Two faces are appended, first the one beside h; their neighbours are left to the caller.
+// Splits the two faces beside inner half-edge h by a point in its middle. Two faces are appended, first the one beside h; their neighbours are left
+// to the caller.
 void split_inner_edge(TriangleSurface& mesh, std::vector<PointSource>& source, int h);
 
-// A surface cut into disk-shaped quadrilateral patches along its own edges. It covers the repaired surface exactly: each face lies on one face of that.
+// A surface cut into disk-shaped quadrilateral patches along its own edges. It covers the repaired surface exactly: each face lies on one face of
+// that.
 struct PatchedSurface {
-  TriangleSurface mesh;                // source_face: face of the repaired surface
-  std::vector<PointSource> source;     // per point
-  std::vector<int> patch;              // per face
-  std::vector<std::array<int, 4>> nodes;              // per patch: base nodes, counter-clockwise
-  std::vector<std::array<PatchSide, 4>> neighbours;   // per patch and side
-  std::vector<std::array<std::vector<int>, 4>> sides; // per patch and side: the points along it, both ends included
+  TriangleSurface mesh;                                // source_face: face of the repaired surface
+  std::vector<PointSource> source;                     // per point
+  std::vector<int> patch;                              // per face
+  std::vector<std::array<int, 4>> nodes;               // per patch: base nodes, counter-clockwise
+  std::vector<std::array<PatchSide, 4>> neighbours;    // per patch and side
+  std::vector<std::array<std::vector<int>, 4>> sides;  // per patch and side: the points along it, both ends included
   int node_count = 0;
 
   int patch_count() const { return static_cast<int>(nodes.size()); }
 };
 
-// The layout of the patches' quadrants: patch q becomes 4 q .. 4 q + 3, the quadrants (0, 0), (1, 0), (1, 1), (0, 1) of its square, and keeps its nodes' names. Points and faces are
-// left as they are, `patch` and `sides` empty: the surface is cut anew where a map says (ChartMesh::quadrisect(), extract_patch_maps()).
+// The layout of the patches' quadrants: patch q becomes 4 q .. 4 q + 3, the quadrants (0, 0), (1, 0), (1, 1), (0, 1) of its square, and keeps its
+// nodes' names. Points and faces are left as they are, `patch` and `sides` empty: the surface is cut anew where a map says (ChartMesh::quadrisect(),
+// extract_patch_maps()).
 PatchedSurface quadrisected(PatchedSurface surface);
 
-// A part of a patched surface made of some of its patches. Patches are numbered in the order given; points and nodes where the part merely touches itself are doubled.
+// A part of a patched surface made of some of its patches. Patches are numbered in the order given; points and nodes where the part merely touches
+// itself are doubled.
 struct PatchedPart {
   PatchedSurface surface;
   std::vector<int> face;   // per face: that of the whole

@@ -123,13 +123,17 @@ void StarRelaxation::relax_folded(int v, double eps) {
   }
 }
 
-// On a straight boundary a vertex beyond its neighbours has a star of a full turn instead of half a one, without any folded triangle, and a corner of the boundary near it another angle.
+// On a straight boundary a vertex beyond its neighbours has a star of a full turn instead of half a one, without any folded triangle, and a corner of
+// the boundary near it another angle.
 bool StarRelaxation::is_wound(int v) const {
   switch (c_.kind[v]) {
-    case ChartMesh::Kind::Cone: return false;
+    case ChartMesh::Kind::Cone:
+      return false;
     case ChartMesh::Kind::SlideU:
-    case ChartMesh::Kind::SlideV: return c_.angle_at(v) > 4;
-    default: return c_.angle_at(v) > 9;
+    case ChartMesh::Kind::SlideV:
+      return c_.angle_at(v) > 4;
+    default:
+      return c_.angle_at(v) > 9;
   }
 }
 

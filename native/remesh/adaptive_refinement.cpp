@@ -174,8 +174,8 @@ class AdaptiveRefinement {
   QuadMesh run(HybridMesh& result, const Progress& progress) {
     const std::int64_t least = base_.leaf_counts().vertices;
     if (least > budget_)
-      throw Error(ErrorCode::InvalidInput, "the surface needs at least " + std::to_string(least) + " vertices, more than the " +
-                                               std::to_string(budget_) + " allowed");
+      throw Error(ErrorCode::InvalidInput,
+                  "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(budget_) + " allowed");
     Fitted best = options_.error > 0 ? refine_to_error(progress) : refine_to_budget(progress);
     result = std::move(best.hierarchy);
     return std::move(best.mesh);
@@ -203,9 +203,7 @@ class AdaptiveRefinement {
     return result;
   }
 
-  double distance(const QuadMesh& mesh, const Progress& progress) const {
-    return surface_.distance(to_soup(mesh), DistanceOptions(), progress).l2;
-  }
+  double distance(const QuadMesh& mesh, const Progress& progress) const { return surface_.distance(to_soup(mesh), DistanceOptions(), progress).l2; }
 
   static LeafErrors errors_of(const LeafMesh& leaves, const Progress& progress) {
     const HybridMesh closed = leaves.closed();

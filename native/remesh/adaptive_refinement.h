@@ -21,9 +21,9 @@ struct AdaptiveOptions {
 //
 // Without an error bound, at least 98 % of the vertices allowed are used, unless leaves of level `deepest` do not suffice or no sequence of splits
 // leads there (where closure splits every leaf, no mesh has a number between that of the base and four times as many).
-// With one, the mesh meets it, as DistanceReference::distance() with its default options measures it, with nearly the fewest vertices that refinement needs for
-// it; if the vertices allowed do not suffice, they are used and the bound is missed, which is for the caller to see.
-// Throws Error{InvalidInput} if the base alone has more vertices than are allowed.
+// With one, the mesh meets it, as DistanceReference::distance() with its default options measures it, with nearly the fewest vertices that refinement
+// needs for it; if the vertices allowed do not suffice, they are used and the bound is missed, which is for the caller to see. Throws
+// Error{InvalidInput} if the base alone has more vertices than are allowed.
 QuadMesh refine_adaptively(HybridMesh& hierarchy, const DistanceReference& surface, const AdaptiveOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -12,7 +12,8 @@ namespace {
 
 class AngleRelaxation {
  public:
-  AngleRelaxation(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options) : mesh_(mesh), fixed_(fixed), options_(options) {
+  AngleRelaxation(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options)
+      : mesh_(mesh), fixed_(fixed), options_(options) {
     // The quads around every vertex.
     row_.assign(mesh.points.size() + 1, 0);
     for (std::size_t f = 0; f < mesh.face_count(); ++f)

@@ -15,8 +15,8 @@ struct AngleRelaxationOptions {
   double reach = 100;     // how far a vertex may move in all, in lengths of its shortest edge at the start
 };
 
-// Moves vertices along the surface, in the tangent plane of the mesh, so that the corners of its quads come nearer to right angles; lengths are free. Vertices with `fixed` set
-// stay. A fit should follow, which brings the vertices back onto the surface.
+// Moves vertices along the surface, in the tangent plane of the mesh, so that the corners of its quads come nearer to right angles; lengths are free.
+// Vertices with `fixed` set stay. A fit should follow, which brings the vertices back onto the surface.
 void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

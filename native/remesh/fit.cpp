@@ -14,8 +14,8 @@
 namespace hybrid_mesh {
 namespace {
 
-// The mesh split into triangles, quads along the diagonal that leaves the flatter pair, and what lies across each triangle's edges. A coarse mesh may have two faces with the same
-// diagonal, so that adjacency goes by faces' sides, not by pairs of vertices of triangles.
+// The mesh split into triangles, quads along the diagonal that leaves the flatter pair, and what lies across each triangle's edges. A coarse mesh may
+// have two faces with the same diagonal, so that adjacency goes by faces' sides, not by pairs of vertices of triangles.
 struct TriangleCover {
   std::vector<std::array<int, 3>> faces;
   std::vector<int> opposite;  // per half-edge 3 t + i, -1: none
@@ -161,7 +161,9 @@ struct BlockMatrix {
     }
     block.resize(column.size());
   }
-  int find(int i, int j) const { return static_cast<int>(std::lower_bound(column.begin() + row[i], column.begin() + row[i + 1], j) - column.begin()); }
+  int find(int i, int j) const {
+    return static_cast<int>(std::lower_bound(column.begin() + row[i], column.begin() + row[i + 1], j) - column.begin());
+  }
 };
 
 // Edge neighbours of every vertex, for the uniform Laplacian (the mean of the neighbours less the vertex).
@@ -219,7 +221,8 @@ std::vector<Vec3> vertex_normals(const QuadMesh& mesh) {
     const std::int64_t begin = mesh.offsets[f], n = mesh.offsets[f + 1] - begin;
     Vec3 sum = Vec3::Zero();
     const Vec3& origin = mesh.points[mesh.indices[begin]];
-    for (std::int64_t i = 1; i + 1 < n; ++i) sum += (mesh.points[mesh.indices[begin + i]] - origin).cross(mesh.points[mesh.indices[begin + i + 1]] - origin);
+    for (std::int64_t i = 1; i + 1 < n; ++i)
+      sum += (mesh.points[mesh.indices[begin + i]] - origin).cross(mesh.points[mesh.indices[begin + i + 1]] - origin);
     for (std::int64_t i = 0; i < n; ++i) normals[mesh.indices[begin + i]] += sum;
   }
   for (Vec3& n : normals) {
@@ -240,7 +243,8 @@ std::vector<double> smoothness_at(const QuadMesh& mesh, const FitOptions& option
     for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) worst[mesh.indices[i]] = std::min(worst[mesh.indices[i]], jacobian);
   }
   const double ratio = options.square_smoothness / options.smoothness;
-  for (std::size_t v = 0; v < worst.size(); ++v) smoothness[v] *= std::pow(ratio, std::clamp((worst[v] - options.poor) / (options.square - options.poor), 0.0, 1.0));
+  for (std::size_t v = 0; v < worst.size(); ++v)
+    smoothness[v] *= std::pow(ratio, std::clamp((worst[v] - options.poor) / (options.square - options.poor), 0.0, 1.0));
   return smoothness;
 }
 
@@ -273,12 +277,14 @@ std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSampl
   return result;
 }
 
-void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress) {
+void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples,
+              const FitOptions& options, const Progress& progress) {
   const int n = static_cast<int>(mesh.points.size());
   if (n == 0 || samples.empty()) return;
   BlockMatrix matrix(mesh);
   const Neighbours neighbours(mesh);
-  // The regulariser of a vertex is measured against the samples' weight that is meant to fall to it. (Not what does fall to it: at creases some get none.)
+  // The regulariser of a vertex is measured against the samples' weight that is meant to fall to it. (Not what does fall to it: at creases some get
+  // none.)
   std::vector<double> part(n), regularizer(n);
   double weight_sum = 0, share_sum = 0;
   for (const FitSample& s : samples) weight_sum += s.weight;

@@ -16,19 +16,20 @@ struct FitSample {
 };
 
 struct FitOptions {
-  int rounds = 4;                 // each finds closest points anew
-  double tangential = 0.01;       // weight of the distance along the surface against that along its normal
-  double smoothness = 0.03;       // weight of the Laplacian's tangential part, which keeps quads from folding
+  int rounds = 4;                   // each finds closest points anew
+  double tangential = 0.01;         // weight of the distance along the surface against that along its normal
+  double smoothness = 0.03;         // weight of the Laplacian's tangential part, which keeps quads from folding
   double square_smoothness = 0.03;  // the same where quads are square: less lets their vertices slide to where the surface bends
   double poor = 0.3, square = 0.9;  // scaled Jacobians: of quads that need all of the smoothness, of those that count as square
-  int iterations = 60;            // of conjugate gradients a round, at most
+  int iterations = 60;              // of conjugate gradients a round, at most
 };
 
-// Moves the vertices of a polygon mesh so that the weighted mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay. Samples' faces are updated to
-// those that hold their closest points.
-// `share` is the part of the surface that each vertex is meant to stand for, in any unit (a quad's parameter area): the regulariser counts as much there; empty means equal shares.
-// Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
-void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples, const FitOptions& options, const Progress& progress);
+// Moves the vertices of a polygon mesh so that the weighted mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay.
+// Samples' faces are updated to those that hold their closest points. `share` is the part of the surface that each vertex is meant to stand for, in
+// any unit (a quad's parameter area): the regulariser counts as much there; empty means equal shares. Based on: Hoppe, DeRose, Duchamp, McDonald,
+// Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
+void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples,
+              const FitOptions& options, const Progress& progress);
 
 // Squared distance of every sample to the mesh, by walking from its face; updates the faces.
 std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples);

@@ -12,7 +12,8 @@ namespace {
 // The edits of one level, gathered to operations on disjoint sets of its quads.
 class LevelOperations {
  public:
-  LevelOperations(HybridMesh& mesh, PatchedSurface& layout, std::vector<int>& node_of, int level) : mesh_(mesh), layout_(layout), node_of_(node_of), level_(level) {
+  LevelOperations(HybridMesh& mesh, PatchedSurface& layout, std::vector<int>& node_of, int level)
+      : mesh_(mesh), layout_(layout), node_of_(node_of), level_(level) {
     const int count = layout.patch_count();
     patches_.resize(count);
     std::iota(patches_.begin(), patches_.end(), 0);
@@ -102,14 +103,16 @@ class LevelOperations {
     repatch.removed = group.removed;
     std::vector<char> inside(layout_.patch_count(), 0);
     for (const int q : group.added) inside[q] = 1;
-    // A vertex of the level stays where a side that is not between two new quads holds it; else the operation has taken it, and made another in its place.
+    // A vertex of the level stays where a side that is not between two new quads holds it; else the operation has taken it, and made another in its
+    // place.
     std::map<int, int> corner_of;  // by layout node
     for (const int q : group.added)
       for (int i = 0; i < 4; ++i) {
         const PatchSide other = layout_.neighbours[q][i];
         if (other.patch >= 0 && inside[other.patch]) continue;
         for (const int n : {layout_.nodes[q][i], layout_.nodes[q][(i + 1) % 4]})
-          if (vertices_[n].old.valid() && corner_of.insert({n, static_cast<int>(repatch.boundary.size())}).second) repatch.boundary.push_back(vertices_[n].old);
+          if (vertices_[n].old.valid() && corner_of.insert({n, static_cast<int>(repatch.boundary.size())}).second)
+            repatch.boundary.push_back(vertices_[n].old);
       }
     for (const int q : group.added) {
       std::array<int, 4> quad;
@@ -130,10 +133,10 @@ class LevelOperations {
   PatchedSurface& layout_;
   std::vector<int>& node_of_;
   const int level_;
-  std::vector<int> patches_;     // per patch of the layout: its number among all that there ever were on this level
-  std::vector<int> group_;       // per number: union-find of what belongs to one operation
-  std::vector<Kind> kinds_;      // per number
-  std::vector<Vertex> vertices_; // per node of the layout
+  std::vector<int> patches_;      // per patch of the layout: its number among all that there ever were on this level
+  std::vector<int> group_;        // per number: union-find of what belongs to one operation
+  std::vector<Kind> kinds_;       // per number
+  std::vector<Vertex> vertices_;  // per node of the layout
   int fresh_ = 0;
 };
 

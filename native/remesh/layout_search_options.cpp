@@ -7,8 +7,9 @@
 namespace hybrid_mesh {
 namespace {
 
-// Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too few to choose from. Two levels with
-// operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice, and neither the distances nor the angles are better.
+// Irregular operations are on one level: the first with enough quads to follow the shape's features, or the last that is wanted, unless that has too
+// few to choose from. Two levels with operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice,
+// and neither the distances nor the angles are better.
 constexpr double kLeastQuads = 60, kEnoughQuads = 250;
 // Where skin is grown on a fitted base: so many levels above it, where towers take little of the budget.
 constexpr int kTowerLevel = 2;
@@ -34,7 +35,8 @@ double quads_for_budget(const Budget& budget, const TopologySummary& topology, d
   }
 }
 
-void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base, int attempt) {
+void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology,
+               const BaseDomain& base, int attempt) {
   // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
   if (base.quads() < 20) {
     search.rounds = 0;
@@ -62,7 +64,8 @@ void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const 
   last.trials = 30;
 }
 
-// A fitted base has quads where the shape asks for them; what is far longer than wide grows skin on a level above. Not for adaptive meshes: they would begin with all quads of that level.
+// A fitted base has quads where the shape asks for them; what is far longer than wide grows skin on a level above. Not for adaptive meshes: they
+// would begin with all quads of that level.
 void grow_towers(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const BaseDomain& base) {
   if (options.semi_regular || options.base == BaseSize::Given || options.refinement != Refinement::Uniform || budget.levels <= kTowerLevel) return;
   const double cells = std::pow(4.0, kTowerLevel);
@@ -77,7 +80,8 @@ void grow_towers(LayoutSearchOptions& search, const RemeshOptions& options, cons
 
 }  // namespace
 
-LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base, int attempt) {
+LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base,
+                                          int attempt) {
   LayoutSearchOptions search;
   search.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
   search.vertices = 30.0 * base.quads();

@@ -14,7 +14,7 @@ namespace hybrid_mesh {
 struct Budget {
   std::int64_t vertices = 0;
   int levels = 0;
-  double base_size = 0;      // see BaseDomainOptions
+  double base_size = 0;  // see BaseDomainOptions
   double boundary_side = 0;
 };
 
@@ -22,6 +22,7 @@ struct Budget {
 constexpr double kRoomForARing = 4;
 
 // How the layout is searched: on the base alone, or on finer levels too, where skin is grown. attempt: how many bases have failed before.
-LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base, int attempt);
+LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base,
+                                          int attempt);
 
 }  // namespace hybrid_mesh

@@ -53,14 +53,16 @@ class Entry {
   }
   std::int64_t integer(std::int64_t least, std::int64_t most) const {
     // What is larger than any signed number would become a negative one.
-    const bool huge = json_->is_number_unsigned() && json_->get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    const bool huge =
+        json_->is_number_unsigned() && json_->get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
     if (!json_->is_number_integer() || huge || json_->get<std::int64_t>() < least || json_->get<std::int64_t>() > most)
       refuse("must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return json_->get<std::int64_t>();
   }
   int index(std::size_t count) const { return static_cast<int>(integer(0, static_cast<std::int64_t>(count) - 1)); }
   double number(double least) const {
-    if (!json_->is_number() || !std::isfinite(json_->get<double>()) || json_->get<double>() < least) refuse("must be a finite number, at least " + Json(least).dump());
+    if (!json_->is_number() || !std::isfinite(json_->get<double>()) || json_->get<double>() < least)
+      refuse("must be a finite number, at least " + Json(least).dump());
     return json_->get<double>();
   }
   std::string text() const {
@@ -169,7 +171,8 @@ LayoutOutline base_from_json(const Entry& entry) {
       const PatchSide& s = base.neighbours[q][i];
       if (s.patch < 0) continue;
       const PatchSide& back = base.neighbours[s.patch][s.side];
-      if (back.patch != static_cast<int>(q) || back.side != i) entry.at("neighbours").list()[q].list()[i].refuse("names a side that does not name this one");
+      if (back.patch != static_cast<int>(q) || back.side != i)
+        entry.at("neighbours").list()[q].list()[i].refuse("names a side that does not name this one");
     }
   if (entry.has("curves")) curves_from_json(entry.at("curves"), base);
   return base;
@@ -210,7 +213,8 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
     const std::vector<Entry> s = entry.at("start").list(2);
     start = {quad(s[0]), s[1].index(4)};
     const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
-    if (!inside(start.patch) || inside(layout.layout().neighbours[start.patch][start.side].patch)) entry.at("start").refuse("is no side of the quads' boundary");
+    if (!inside(start.patch) || inside(layout.layout().neighbours[start.patch][start.side].patch))
+      entry.at("start").refuse("is no side of the quads' boundary");
   }
   const std::optional<PatchRegion> region = make_region(layout.layout(), patches, start);
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
@@ -230,7 +234,11 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
 
 // Edits of the base level: all are named by numbers in the base domain as it was first, which the plan does not hold.
 Json raw_edit(const LayoutEdit& edit) {
-  return {{"patches", edit.patches}, {"start", {edit.start.patch, edit.start.side}}, {"quads", edit.quads}, {"rings", edit.rings}, {"inner_nodes", edit.inner_nodes}};
+  return {{"patches", edit.patches},
+          {"start", {edit.start.patch, edit.start.side}},
+          {"quads", edit.quads},
+          {"rings", edit.rings},
+          {"inner_nodes", edit.inner_nodes}};
 }
 LayoutEdit raw_edit(const Entry& entry) {
   constexpr std::int64_t most = std::numeric_limits<int>::max();
@@ -261,14 +269,10 @@ Json origin_to_json(const Plan::Origin& origin) {
     for (const LayoutEdit& edit : round) list.push_back(raw_edit(edit));
     rounds.push_back(std::move(list));
   }
-  return {{"surface", origin.surface},
-          {"faces", origin.faces},
-          {"size", origin.base.size},
-          {"boundary_side", origin.base.boundary_side},
-          {"least", origin.base.least},
-          {"seed", origin.base.seed},
-          {"vertices", origin.level.vertices},
-          {"vertices_a_quad", origin.level.vertices_a_quad},
+  return {{"surface", origin.surface},         {"faces", origin.faces},
+          {"size", origin.base.size},          {"boundary_side", origin.base.boundary_side},
+          {"least", origin.base.least},        {"seed", origin.base.seed},
+          {"vertices", origin.level.vertices}, {"vertices_a_quad", origin.level.vertices_a_quad},
           {"rounds", std::move(rounds)}};
 }
 
@@ -350,7 +354,8 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
     e.only({"level", "vertices", "vertices_a_quad", "operations"});
     const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, kMostLevels));
     while (levels.size() < level) {
-      if (4 * static_cast<std::int64_t>(layout.addresses().size()) > kMostPlanQuads) e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
+      if (4 * static_cast<std::int64_t>(layout.addresses().size()) > kMostPlanQuads)
+        e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
       levels.emplace_back();
       layout.quadrisect();
     }
@@ -367,7 +372,8 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
       LayoutEdit edit = edit_from_json(op, layout);
       for (const LayoutEdit& other : round)
         for (const int q : other.patches)
-          if (std::find(edit.patches.begin(), edit.patches.end(), q) != edit.patches.end()) op.refuse("has a quad that another operation of its round has");
+          if (std::find(edit.patches.begin(), edit.patches.end(), q) != edit.patches.end())
+            op.refuse("has a quad that another operation of its round has");
       round.push_back(edit);
       if (op.has("even_quads")) {
         if (r > 0) op.at("even_quads").refuse("belongs to the first round, which is 0");
@@ -395,7 +401,8 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
 
 // --- regions -------------------------------------------------------------------------------------------------------------------------
 using Pattern = RegionPattern::Kind;
-constexpr std::array<std::pair<Pattern, const char*>, 3> kLayouts{{{Pattern::Automatic, kAutomatic}, {Pattern::Cubes, "cubes"}, {Pattern::Template, "template"}}};
+constexpr std::array<std::pair<Pattern, const char*>, 3> kLayouts{
+    {{Pattern::Automatic, kAutomatic}, {Pattern::Cubes, "cubes"}, {Pattern::Template, "template"}}};
 
 Json curves_to_json(const std::vector<DrawnStroke>& strokes) {
   Json curves = Json::array();
@@ -549,13 +556,15 @@ Plan plan_from_json(const std::string& text) {
   top.only({"format", "version", "base", "levels", "operations"});
   if (top.at("format").text() != kFormat) top.at("format").refuse(std::string("must be \"") + kFormat + "\"");
   if (const std::int64_t version = top.at("version").integer(1, 1000000); version > kVersion)
-    throw Error(ErrorCode::Unsupported, "the plan has version " + std::to_string(version) + "; this program reads versions up to " + std::to_string(kVersion));
+    throw Error(ErrorCode::Unsupported,
+                "the plan has version " + std::to_string(version) + "; this program reads versions up to " + std::to_string(kVersion));
   const Entry base = top.at("base");
   Plan plan;
   if (base.has("boundary_nodes")) {
     base.only({"boundary_nodes", "cubes"});
     plan.tower = tower_from_json(base);
-    if (top.has("levels") && !top.at("levels").list().empty()) top.at("levels").refuse("must be empty: quads have addresses once the base has been made; \"operations\" may be given");
+    if (top.has("levels") && !top.at("levels").list().empty())
+      top.at("levels").refuse("must be empty: quads have addresses once the base has been made; \"operations\" may be given");
   } else {
     plan.base = base_from_json(base);
     if (base.has("origin")) plan.origin = origin_from_json(base.at("origin"));

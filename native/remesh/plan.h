@@ -6,8 +6,8 @@
 #include <string>
 
 #include "layout/drawn/boundary_tower.h"
-#include "layout/search/layout_search.h"
 #include "layout/drawn/layout_transfer.h"
+#include "layout/search/layout_search.h"
 #include "layout/search/region_repatch.h"
 #include "remesh/working_surface.h"
 
@@ -16,15 +16,16 @@ namespace hybrid_mesh {
 // A level of a plan with operations has at most so many quads: deeper ones take more memory than there is, and no operation is meant there.
 constexpr std::int64_t kMostPlanQuads = std::int64_t{1} << 22;
 
-// What decides the quads of a remesh: where the base domain's quads lie in space, and the irregular operations by their place in the hierarchy. Nothing in it refers to the input's
-// numbering, so that it can be carried out on any surface of about the same shape.
+// What decides the quads of a remesh: where the base domain's quads lie in space, and the irregular operations by their place in the hierarchy.
+// Nothing in it refers to the input's numbering, so that it can be carried out on any surface of about the same shape.
 struct Plan {
-  // How the base came about on the surface that the plan was made on. On that surface it is made in the same way again; on others the outline is laid out.
+  // How the base came about on the surface that the plan was made on. On that surface it is made in the same way again; on others the outline is laid
+  // out.
   struct Origin {
-    std::string surface;  // its fingerprint()
+    std::string surface;     // its fingerprint()
     std::int64_t faces = 0;  // see make_working_surface()
     BaseDomainOptions base;
-    LayoutScript::Level level;  // the base level's edits
+    LayoutScript::Level level;           // the base level's edits
     std::optional<BoundaryTower> tower;  // instead of all but the surface: in the input's space
   };
   // Quads of one level, laid out anew after all of that level's other operations; see RegionRepatch.
@@ -36,15 +37,15 @@ struct Plan {
     int start_side = 0;
     int buffer_rings = 1;
   };
-  LayoutOutline base;                       // in the input's space
-  std::optional<BoundaryTower> tower;       // instead of the base, and then there are no levels: in the input's space
+  LayoutOutline base;                  // in the input's space
+  std::optional<BoundaryTower> tower;  // instead of the base, and then there are no levels: in the input's space
   std::optional<Origin> origin;
   std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
   std::vector<Region> regions;
 };
 
-// The layout of a base domain and of its levels before and after a plan's operations, in which quads have addresses: the number of a root quad (those of the base domain first, then
-// every operation's in order), then for each level the number of the child, as in "12.0.3".
+// The layout of a base domain and of its levels before and after a plan's operations, in which quads have addresses: the number of a root quad (those
+// of the base domain first, then every operation's in order), then for each level the number of the child, as in "12.0.3".
 class PlanLayout {
  public:
   explicit PlanLayout(const PatchedSurface& base);

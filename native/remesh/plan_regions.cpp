@@ -41,10 +41,12 @@ class RegionRepatcher {
 
   RegionEdit repatch(const Plan::Region& region) {
     if (const int finest = map_.levels.back().level; region.level < finest)
-      throw Error(ErrorCode::InvalidInput, "level " + std::to_string(region.level) + " cannot be laid out anew: level " + std::to_string(finest) + " has operations already");
+      throw Error(ErrorCode::InvalidInput,
+                  "level " + std::to_string(region.level) + " cannot be laid out anew: level " + std::to_string(finest) + " has operations already");
     while (level_ < region.level) {
       if (4 * static_cast<std::int64_t>(layout_.addresses().size()) > kMostPlanQuads)
-        throw Error(ErrorCode::InvalidInput, "level " + std::to_string(region.level) + " would have more than " + std::to_string(kMostPlanQuads) + " quads");
+        throw Error(ErrorCode::InvalidInput,
+                    "level " + std::to_string(region.level) + " would have more than " + std::to_string(kMostPlanQuads) + " quads");
       layout_.quadrisect();
       if (++level_ < static_cast<int>(map_.script.levels.size())) layout_.apply(map_.script.levels[level_]);
     }
@@ -83,7 +85,8 @@ class RegionRepatcher {
 
 }  // namespace
 
-std::vector<RegionEdit> repatch_regions(const TriangleSurface& surface, BaseMap& map, const std::vector<Plan::Region>& regions, const Placement& placement, const Progress& progress) {
+std::vector<RegionEdit> repatch_regions(const TriangleSurface& surface, BaseMap& map, const std::vector<Plan::Region>& regions,
+                                        const Placement& placement, const Progress& progress) {
   std::vector<std::size_t> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return regions[i].level < regions[j].level; });

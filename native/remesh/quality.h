@@ -5,8 +5,8 @@
 
 namespace hybrid_mesh {
 
-// Shape of a mesh's quads. The scaled Jacobian of a quad is the least over its corners of the sine of the corner's angle, signed by the quad's normal (the cross
-// product of its diagonals). Irregular: inner vertices where other than four faces meet.
+// Shape of a mesh's quads. The scaled Jacobian of a quad is the least over its corners of the sine of the corner's angle, signed by the quad's normal
+// (the cross product of its diagonals). Irregular: inner vertices where other than four faces meet.
 struct QuadQuality {
   double jacobian_min = 0, jacobian_p05 = 0, jacobian_median = 0;
   double inverted = 0;  // fraction of the quads

@@ -108,7 +108,8 @@ class Remesher {
     repair_options.drop_components = options_.drop_components;
     RepairReport repaired;
     result_.repaired = repair(input_, repair_options, repaired, progress_.part(0, 0.05));
-    if (options_.strict && repaired.changed()) throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(repaired));
+    if (options_.strict && repaired.changed())
+      throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(repaired));
     topology_ = summarize_topology(to_soup(result_.repaired));
     placement_ = placement_of(result_.repaired.points);
     Json r;
@@ -121,12 +122,8 @@ class Remesher {
     r["nonmanifold_vertices"] = repaired.nonmanifold_vertices;
     r["one_sided_cuts"] = repaired.one_sided_cuts;
     r["dropped_components"] = repaired.dropped_components;
-    report_["input"] = {{"vertices", input_.points.size()},
-                        {"faces", input_.polygon_count()},
-                        {"components", topology_.components},
-                        {"boundary_loops", topology_.boundary_loops},
-                        {"genus", topology_.genus},
-                        {"repaired", r}};
+    report_["input"] = {{"vertices", input_.points.size()},           {"faces", input_.polygon_count()}, {"components", topology_.components},
+                        {"boundary_loops", topology_.boundary_loops}, {"genus", topology_.genus},        {"repaired", r}};
     report_["topology"] = {{"loops", Json::array()}, {"tubes", Json::array()}};
   }
 
@@ -199,13 +196,18 @@ class Remesher {
         failure = e.what();
       }
     }
-    if (least >= 0) throw Error(ErrorCode::InvalidInput, "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(options_.vertices) + " allowed");
+    if (least >= 0)
+      throw Error(ErrorCode::InvalidInput, "the surface needs at least " + std::to_string(least) + " vertices, more than the " +
+                                               std::to_string(options_.vertices) + " allowed");
     throw Error(ErrorCode::Internal, failure);
   }
 
-  std::int64_t vertices_at(int level) const { return uniform_vertices(finest_.quads, topology_.euler, finest_.boundary_sides, level - finest_.level); }
+  std::int64_t vertices_at(int level) const {
+    return uniform_vertices(finest_.quads, topology_.euler, finest_.boundary_sides, level - finest_.level);
+  }
 
-  // A cube for a ball, and four quads around a hole, with which its boundary has no corners; around a handle it takes some forty quads until a map to them holds.
+  // A cube for a ball, and four quads around a hole, with which its boundary has no corners; around a handle it takes some forty quads until a map to
+  // them holds.
   int least_quads() const { return static_cast<int>(std::max(6.0 * topology_.components, 39.0 * topology_.genus) + 4.0 * topology_.boundary_loops); }
 
   void try_base(int attempt) {
@@ -248,11 +250,13 @@ class Remesher {
     const double parts = static_cast<double>(map.levels.size());
     for (std::size_t i = 0; i < map.levels.size(); ++i) {
       LevelMap& level = map.levels[i];
-      std::vector<PatchMap> maps = extract_patch_maps(level.charts, level.layout, working_.mesh.faces, progress_.part(0.5 + 0.05 * i / parts, 0.5 + 0.05 * (i + 1) / parts));
+      std::vector<PatchMap> maps =
+          extract_patch_maps(level.charts, level.layout, working_.mesh.faces, progress_.part(0.5 + 0.05 * i / parts, 0.5 + 0.05 * (i + 1) / parts));
       for (int q = 0; q < level.layout.patch_count(); ++q) {
         if (!level.changed.empty() && !level.changed[q]) continue;
         const char* defect = find_map_defect(maps[q]);
-        if (*defect) throw Error(ErrorCode::Internal, "the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
+        if (*defect)
+          throw Error(ErrorCode::Internal, "the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
         working_.to_repaired(maps[q], result_.repaired);
         made.mesh.set_map(made.node_of[level.level][q], std::move(maps[q]));
       }
@@ -302,7 +306,9 @@ class Remesher {
     for (int q = 0; q < base.patch_count(); ++q)
       for (int i = 0; i < 4; ++i) {
         const auto &from = corner[i], &to = corner[(i + 1) % 4];
-        const auto at = [&](double t) { return placement_.from_unit(result_.hierarchy.sample({q, (1 - t) * from[0] + t * to[0], (1 - t) * from[1] + t * to[1]}).position); };
+        const auto at = [&](double t) {
+          return placement_.from_unit(result_.hierarchy.sample({q, (1 - t) * from[0] + t * to[0], (1 - t) * from[1] + t * to[1]}).position);
+        };
         outline.nodes[base.nodes[q][i]] = at(0);
         const PatchSide& other = base.neighbours[q][i];
         // Each line once.
@@ -322,7 +328,8 @@ class Remesher {
     }
     const std::int64_t needed = vertices_at(std::max(finest_.level, budget_.levels));
     if (options_.vertices > 0 && options_.refinement == Refinement::Uniform && needed > options_.vertices)
-      throw Error(ErrorCode::InvalidInput, "the plan needs at least " + std::to_string(needed) + " vertices, more than the " + std::to_string(options_.vertices) + " allowed");
+      throw Error(ErrorCode::InvalidInput,
+                  "the plan needs at least " + std::to_string(needed) + " vertices, more than the " + std::to_string(options_.vertices) + " allowed");
   }
 
   // The numbers of root quads in addresses.
@@ -557,7 +564,9 @@ class Remesher {
     Finest finest;
     std::string plan;
   };
-  Made set_aside() { return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_, finest_, result_.plan}; }
+  Made set_aside() {
+    return {std::move(result_.hierarchy), std::move(result_.final_mesh), report_["base"], report_["levels"], final_distance_, finest_, result_.plan};
+  }
   void put_back(Made made) {
     result_.hierarchy = std::move(made.hierarchy);
     result_.final_mesh = std::move(made.mesh);
@@ -577,7 +586,9 @@ class Remesher {
       const Attempt made = measured_attempt();
       if (made.l2 <= options_.error || level == last || 4 * made.vertices > most_vertices()) return made;
       // Not worth the wait if even errors that fall faster than they do would not fall enough.
-      if (options_.vertices == 0 && made.l2 * std::pow(static_cast<double>(made.vertices) / static_cast<double>(most_vertices()), 1.2) > options_.error) return made;
+      if (options_.vertices == 0 &&
+          made.l2 * std::pow(static_cast<double>(made.vertices) / static_cast<double>(most_vertices()), 1.2) > options_.error)
+        return made;
     }
   }
 
@@ -605,8 +616,8 @@ class Remesher {
     }
     if (enough.vertices == 0 && options_.vertices == 0 && (any_base || !one_level))
       throw Error(ErrorCode::InvalidInput, "the error bound " + scientific(options_.error) + " is out of reach: " + std::to_string(too_few.vertices) +
-                                               " vertices have an L2 distance of " + scientific(too_few.l2) + ", and " + std::to_string(most_vertices()) +
-                                               ", the most that are tried unless a number is given, would not do");
+                                               " vertices have an L2 distance of " + scientific(too_few.l2) + ", and " +
+                                               std::to_string(most_vertices()) + ", the most that are tried unless a number is given, would not do");
   }
 
   std::int64_t next_aim(const Attempt& enough, const Attempt& too_few) const {
@@ -657,7 +668,8 @@ class Remesher {
     watch_.stop();
   }
 
-  // A base may have missed a tip by bad luck, which shows in the fit: a point of the surface is farther off than a quad is wide. Then another base is tried, and the better one kept.
+  // A base may have missed a tip by bad luck, which shows in the fit: a point of the surface is farther off than a quad is wide. Then another base is
+  // tried, and the better one kept.
   void try_another_base() {
     if (options_.error > 0) return;
     const QuadMesh& mesh = result_.final_mesh;
@@ -711,7 +723,8 @@ class Remesher {
     Json list = Json::array();
     for (int i = 0; i < result_.hierarchy.operation_count(); ++i) {
       const HybridMesh::Operation& op = result_.hierarchy.operation(i);
-      if (op.repatch.level == level) list.push_back({{"kind", op.repatch.kind}, {"removed_quads", op.repatch.removed.size()}, {"new_quads", op.roots.size()}});
+      if (op.repatch.level == level)
+        list.push_back({{"kind", op.repatch.kind}, {"removed_quads", op.repatch.removed.size()}, {"new_quads", op.roots.size()}});
     }
     return list;
   }
@@ -723,8 +736,8 @@ class Remesher {
     watch_.start("measure");
     const SurfaceDistance& d = final_distance_;
     const TopologySummary t = summarize_topology(to_soup(mesh));
-    if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology_.components || t.boundary_loops != topology_.boundary_loops ||
-        t.euler != topology_.euler)
+    if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology_.components ||
+        t.boundary_loops != topology_.boundary_loops || t.euler != topology_.euler)
       throw Error(ErrorCode::Internal, "the final mesh does not have the surface's topology");
     const QuadQuality q = quad_quality(mesh);
     const std::vector<char> irregular = irregular_vertices(mesh);
@@ -744,18 +757,19 @@ class Remesher {
       for (int side = 0; side < 4; ++side) transition |= h.has_finer_neighbour(node, side);
       regular += !transition;
     }
-    report_["final"] = {{"vertices", mesh.points.size()},
-                        {"quads", q.quads},
-                        {"triangles", q.triangles},
-                        {"l2", d.l2},
-                        {"hausdorff", d.hausdorff},
-                        {"boundary_hausdorff", d.boundary_hausdorff < 0 ? Json(nullptr) : Json(d.boundary_hausdorff)},
-                        {"genus", t.genus},
-                        {"components", t.components},
-                        {"boundary_loops", t.boundary_loops},
-                        {"regular_fraction", 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, regular))},
-                        {"irregular_vertices", {{"base", of_base}, {"operations", of_operations}, {"transitions", of_transitions}}},
-                        {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
+    report_["final"] = {
+        {"vertices", mesh.points.size()},
+        {"quads", q.quads},
+        {"triangles", q.triangles},
+        {"l2", d.l2},
+        {"hausdorff", d.hausdorff},
+        {"boundary_hausdorff", d.boundary_hausdorff < 0 ? Json(nullptr) : Json(d.boundary_hausdorff)},
+        {"genus", t.genus},
+        {"components", t.components},
+        {"boundary_loops", t.boundary_loops},
+        {"regular_fraction", 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, regular))},
+        {"irregular_vertices", {{"base", of_base}, {"operations", of_operations}, {"transitions", of_transitions}}},
+        {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
     if (options_.error > 0) report_["final"]["error_bound_met"] = d.l2 <= options_.error;
     report_["warnings"] = warnings(d.l2);
     h.set_final_positions(mesh);
@@ -769,7 +783,8 @@ class Remesher {
   // What was asked for and could not be had.
   Json warnings(double l2) const {
     Json list = Json::array();
-    if (options_.error > 0 && l2 > options_.error) list.push_back("the error bound of " + scientific(options_.error) + " is not met: the L2 distance is " + scientific(l2));
+    if (options_.error > 0 && l2 > options_.error)
+      list.push_back("the error bound of " + scientific(options_.error) + " is not met: the L2 distance is " + scientific(l2));
     return list;
   }
 
@@ -807,7 +822,7 @@ class Remesher {
   std::vector<std::pair<VertexId, std::size_t>> final_vertices_;  // of the final mesh, sorted
   Budget budget_;
   Finest finest_;
-  std::optional<Plan> plan_;  // that was given
+  std::optional<Plan> plan_;              // that was given
   std::vector<RegionEdit> region_edits_;  // of its regions
   // While a bound on the error is being met: the vertices that a base is planned for, and how many levels less than usual it has above it.
   std::int64_t aim_ = 0;
@@ -818,8 +833,9 @@ class Remesher {
 }  // namespace
 
 RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                    options.threads > 0 ? static_cast<std::size_t>(options.threads) : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  const tbb::global_control threads(
+      tbb::global_control::max_allowed_parallelism,
+      options.threads > 0 ? static_cast<std::size_t>(options.threads) : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
   return Remesher(input, options, context).run();
 }
 

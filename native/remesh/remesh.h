@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "base/context.h"
 #include "hierarchy/hybrid_mesh.h"
@@ -16,29 +16,29 @@ enum class Refinement { Uniform, Adaptive };
 enum class BaseSize { Auto, Minimal, Given };
 
 struct RemeshOptions {
-  std::int64_t vertices = 0;              // hard upper bound on the final mesh's vertices; 0 = none
-  double error = 0;                       // stop at this l2 (relative to the bounding-box diagonal); 0 = none
-  int levels = -1;                        // uniform: exactly, adaptive: at most so many regular levels; -1 = as many as the budget needs
+  std::int64_t vertices = 0;  // hard upper bound on the final mesh's vertices; 0 = none
+  double error = 0;           // stop at this l2 (relative to the bounding-box diagonal); 0 = none
+  int levels = -1;            // uniform: exactly, adaptive: at most so many regular levels; -1 = as many as the budget needs
   Refinement refinement = Refinement::Uniform;
-  FaceClosure faces = FaceClosure::Quads; // what becomes of leaves with hanging nodes (adaptive)
+  FaceClosure faces = FaceClosure::Quads;  // what becomes of leaves with hanging nodes (adaptive)
   BaseSize base = BaseSize::Auto;
-  int base_quads = 0;                     // with BaseSize::Given
-  double stretch_threshold = 4;           // above it skin is grown (irregular operations)
-  bool semi_regular = false;              // no irregular operations
-  double drop_components = 0;             // see RepairOptions
-  bool strict = false;                    // refuse input that needs repair
+  int base_quads = 0;            // with BaseSize::Given
+  double stretch_threshold = 4;  // above it skin is grown (irregular operations)
+  bool semi_regular = false;     // no irregular operations
+  double drop_components = 0;    // see RepairOptions
+  bool strict = false;           // refuse input that needs repair
   std::uint64_t seed = 1;
-  std::string plan;                       // JSON text, see Plan: what decides base and operations instead of a search; empty: none
-  int threads = 0;                        // 0 = all cores; never changes the result
+  std::string plan;  // JSON text, see Plan: what decides base and operations instead of a search; empty: none
+  int threads = 0;   // 0 = all cores; never changes the result
 };
 
 struct RemeshResult {
-  HybridMesh hierarchy;                   // with its patch maps
+  HybridMesh hierarchy;  // with its patch maps
   QuadMesh final_mesh;
-  TriangleSurface repaired;               // what the maps' source faces refer to
-  std::string plan;                       // JSON text: what was decided. With it, and the same other options, the same surface gives the same result
-  std::vector<int> plan_root;             // per node: number of a root quad in the addresses of the plan, -1 for other nodes
-  nlohmann::ordered_json report;          // `NAME.report.json` without file name, settings and memory
+  TriangleSurface repaired;       // what the maps' source faces refer to
+  std::string plan;               // JSON text: what was decided. With it, and the same other options, the same surface gives the same result
+  std::vector<int> plan_root;     // per node: number of a root quad in the addresses of the plan, -1 for other nodes
+  nlohmann::ordered_json report;  // `NAME.report.json` without file name, settings and memory
 };
 
 // Remeshes a polygon soup. Runs on the calling thread and TBB's. Throws Error.

@@ -9,9 +9,7 @@
 
 namespace hybrid_mesh {
 
-std::int64_t fit_sample_count(std::size_t vertices) {
-  return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000);
-}
+std::int64_t fit_sample_count(std::size_t vertices) { return std::clamp<std::int64_t>(12 * static_cast<std::int64_t>(vertices), 30000, 4000000); }
 
 std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh) {
   std::vector<double> share(mesh.points.size(), 0);

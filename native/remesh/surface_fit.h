@@ -7,10 +7,10 @@
 namespace hybrid_mesh {
 
 struct SurfaceFitOptions {
-  FitOptions first;      // the fit that comes first
-  int turns = 2;         // of angle relaxation and fit after it
-  int finest = 64;       // leaves finer than this level count as one of it, as in a mesh of that level
-  double unfold = 1.0;   // how far folded quads' vertices may go at the end, in lengths of their shortest edge
+  FitOptions first;     // the fit that comes first
+  int turns = 2;        // of angle relaxation and fit after it
+  int finest = 64;      // leaves finer than this level count as one of it, as in a mesh of that level
+  double unfold = 1.0;  // how far folded quads' vertices may go at the end, in lengths of their shortest edge
 };
 
 // The samples that a mesh of so many vertices is fitted to.

@@ -52,7 +52,9 @@ std::vector<int> map_owners(const HybridMesh& hierarchy, int finest) {
 SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest) {
   double total = 0;
   const std::vector<int> owners = map_owners(hierarchy, finest);
-  const auto normal_of = [](const PatchMap& m, const std::array<int, 3>& t) { return Vec3((m.positions[t[1]] - m.positions[t[0]]).cross(m.positions[t[2]] - m.positions[t[0]])); };
+  const auto normal_of = [](const PatchMap& m, const std::array<int, 3>& t) {
+    return Vec3((m.positions[t[1]] - m.positions[t[0]]).cross(m.positions[t[2]] - m.positions[t[0]]));
+  };
   // A triangle may reach over into where its map does not count: judged by a few of its points.
   const auto density_of = [&](int owner, const PatchMap& m, const std::array<int, 3>& t) {
     const Vec2 c = (m.uv[t[0]] + m.uv[t[1]] + m.uv[t[2]]) / 3;

@@ -8,8 +8,8 @@
 
 namespace hybrid_mesh {
 
-// Points spread over the surface that a hierarchy's maps cover, each with its place in the map and the area it stands for: as many to every leaf's quad,
-// however small it is.
+// Points spread over the surface that a hierarchy's maps cover, each with its place in the map and the area it stands for: as many to every leaf's
+// quad, however small it is.
 class SurfaceSamples {
  public:
   // About `count` of them; leaves finer than level `finest` count as one of that level.

@@ -8,7 +8,8 @@
 namespace hybrid_mesh {
 namespace {
 
-// A side of the base that runs along the boundary is a straight line in the map: a triangle between an inner edge that joins two of its vertices and that line would have no area.
+// A side of the base that runs along the boundary is a straight line in the map: a triangle between an inner edge that joins two of its vertices and
+// that line would have no area.
 void split_chords(TriangleSurface& mesh, std::vector<PointSource>& source) {
   if (std::find(mesh.opposite.begin(), mesh.opposite.end(), -1) == mesh.opposite.end()) return;
   const std::vector<int> loop = EditMesh(mesh).boundary_loops();

@@ -18,11 +18,11 @@ struct Placement {
 };
 Placement placement_of(const std::vector<Vec3>& points);
 
-// The repaired surface as the base domain and the maps are built on it: placed, and with its faces split in four where it has too few for the quads that
-// are to be cut out of it (the same set of points).
+// The repaired surface as the base domain and the maps are built on it: placed, and with its faces split in four where it has too few for the quads
+// that are to be cut out of it (the same set of points).
 struct WorkingSurface {
-  TriangleSurface mesh;              // source_face: face of the repaired surface
-  std::vector<PointSource> source;   // per point, in points of the repaired surface
+  TriangleSurface mesh;             // source_face: face of the repaired surface
+  std::vector<PointSource> source;  // per point, in points of the repaired surface
 
   // Makes a map's sources, given in faces of `mesh`, name faces of the repaired surface.
   void to_repaired(PatchMap& map, const TriangleSurface& repaired) const;

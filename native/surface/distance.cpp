@@ -120,7 +120,8 @@ Faces place(const PolygonSoup& soup, const Frame& frame) {
   const int corner_count = static_cast<int>(soup.indices.size());
   std::vector<int> next(corner_count);
   for (std::size_t p = 0; p < soup.polygon_count(); ++p)
-    for (std::int64_t c = soup.offsets[p]; c < soup.offsets[p + 1]; ++c) next[c] = static_cast<int>(c + 1 < soup.offsets[p + 1] ? c + 1 : soup.offsets[p]);
+    for (std::int64_t c = soup.offsets[p]; c < soup.offsets[p + 1]; ++c)
+      next[c] = static_cast<int>(c + 1 < soup.offsets[p + 1] ? c + 1 : soup.offsets[p]);
   const auto from = [&](int c) { return soup.indices[c]; };
   const auto to = [&](int c) { return soup.indices[next[c]]; };
   const EdgeGroups edges = group_edges(static_cast<int>(soup.points.size()), corner_count, from, to);
@@ -180,8 +181,8 @@ Sums sample(const Faces& from, const SurfaceDistanceQuery& to, const DistanceOpt
 }
 
 // The larger direction; `known` is a distance of some sample.
-HausdorffBounds hausdorff(const SurfaceFaces& a, const SurfaceFaces& b, const SurfaceDistanceQuery& on_a, const SurfaceDistanceQuery& on_b, double known,
-                          const Progress& progress) {
+HausdorffBounds hausdorff(const SurfaceFaces& a, const SurfaceFaces& b, const SurfaceDistanceQuery& on_a, const SurfaceDistanceQuery& on_b,
+                          double known, const Progress& progress) {
   HausdorffOptions options;
   options.known = known;
   const HausdorffBounds ab = one_sided_hausdorff(a, b, on_b, options, progress);
@@ -195,15 +196,15 @@ void check(const PolygonSoup& soup) {
   if (soup.polygon_count() == 0) throw Error(ErrorCode::InvalidInput, "a surface without faces has no distances");
   if (soup.indices.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) throw Error(ErrorCode::Unsupported, "too many faces");
   for (const int v : soup.indices)
-    if (v < 0 || v >= static_cast<int>(soup.points.size())) throw Error(ErrorCode::InvalidInput, "a face has the point " + std::to_string(v) + ", which does not exist");
+    if (v < 0 || v >= static_cast<int>(soup.points.size()))
+      throw Error(ErrorCode::InvalidInput, "a face has the point " + std::to_string(v) + ", which does not exist");
 }
 
 }  // namespace
 
 class DistanceReference::Prepared {
  public:
-  explicit Prepared(const PolygonSoup& soup)
-      : frame(frame_of(soup)), faces(place(soup, frame)), query(faces.points, faces.triangles) {
+  explicit Prepared(const PolygonSoup& soup) : frame(frame_of(soup)), faces(place(soup, frame)), query(faces.points, faces.triangles) {
     if (!faces.boundary.empty()) edges.emplace(faces.points, faces.boundary);
   }
 
@@ -239,13 +240,15 @@ SurfaceDistance DistanceReference::distance(const PolygonSoup& other, const Dist
   d.l2 = std::max(d.l2_ab, d.l2_ba);
   d.mean = std::max(ab.distances, ba.distances) / n;
   const double known = std::sqrt(std::max(ab.largest, ba.largest));
-  const HausdorffBounds bounds = hausdorff({fa.points, fa.triangles, fa.rim}, {fb.points, fb.triangles, fb.rim}, on_a, on_b, known, progress.part(0.7, 0.95));
+  const HausdorffBounds bounds =
+      hausdorff({fa.points, fa.triangles, fa.rim}, {fb.points, fb.triangles, fb.rim}, on_a, on_b, known, progress.part(0.7, 0.95));
   d.hausdorff = bounds.reached;
   d.hausdorff_bound = bounds.at_most;
   if (prepared_->edges && !fb.boundary.empty()) {
     const std::vector<char> none;
     const SurfaceDistanceQuery &edges_of_a = *prepared_->edges, edges_of_b(fb.points, fb.boundary);
-    d.boundary_hausdorff = hausdorff({fa.points, fa.boundary, none}, {fb.points, fb.boundary, none}, edges_of_a, edges_of_b, 0, progress.part(0.95, 1)).reached;
+    d.boundary_hausdorff =
+        hausdorff({fa.points, fa.boundary, none}, {fb.points, fb.boundary, none}, edges_of_a, edges_of_b, 0, progress.part(0.95, 1)).reached;
   }
   progress(1);
   return d;

@@ -34,8 +34,8 @@ class EditMesh {
   // The vertices around v, counter-clockwise; for a boundary vertex from its clockwise-most to its last neighbour.
   void ring(int v, std::vector<int>& vertices) const;
   void grow(std::vector<int>& vertices, int rings) const;  // adds rings of neighbours
-  std::vector<int> boundary_loops() const;  // per vertex the number of its boundary loop, or -1. Operations leave it as it is
-  int find(int a, int b) const;  // the half-edge a -> b or -1 (the mesh may still hold b -> a at a boundary)
+  std::vector<int> boundary_loops() const;                 // per vertex the number of its boundary loop, or -1. Operations leave it as it is
+  int find(int a, int b) const;                            // the half-edge a -> b or -1 (the mesh may still hold b -> a at a boundary)
   bool adjacent(int a, int b) const { return find(a, b) >= 0 || find(b, a) >= 0; }
 
   // Would moving from(h) onto to(h) keep a simplicial manifold of the same topology, boundaries included?
@@ -46,10 +46,10 @@ class EditMesh {
   void flip(int h);
   void undo_flip(int h);
 
-  std::vector<int> origin, opposite, edge;  // per half-edge
-  std::vector<int> out;                     // per vertex
-  std::vector<char> alive;                  // per face
-  std::vector<char> vertex_live;            // per vertex
+  std::vector<int> origin, opposite, edge;               // per half-edge
+  std::vector<int> out;                                  // per vertex
+  std::vector<char> alive;                               // per face
+  std::vector<char> vertex_live;                         // per vertex
   int face_count = 0, vertex_count = 0, edge_count = 0;  // faces and vertices alive; edge names given out
 
  private:

@@ -110,7 +110,8 @@ class Prism {
 
 class Search {
  public:
-  Search(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query, const HausdorffOptions& options, const Progress& progress)
+  Search(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query, const HausdorffOptions& options,
+         const Progress& progress)
       : from_(from), to_(to), query_(query), options_(options), progress_(progress), best_(options.known) {}
 
   HausdorffBounds run() {
@@ -244,8 +245,8 @@ class Search {
 
 }  // namespace
 
-HausdorffBounds one_sided_hausdorff(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query, const HausdorffOptions& options,
-                                    const Progress& progress) {
+HausdorffBounds one_sided_hausdorff(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query,
+                                    const HausdorffOptions& options, const Progress& progress) {
   return Search(from, to, query, options, progress).run();
 }
 

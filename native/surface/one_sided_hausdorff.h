@@ -30,7 +30,7 @@ struct HausdorffBounds {
 
 // The largest distance of a point of `from` to `to`, for which `query` stands. In parallel; the result does not depend on the number of
 // threads.
-HausdorffBounds one_sided_hausdorff(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query, const HausdorffOptions& options,
-                                    const Progress& progress);
+HausdorffBounds one_sided_hausdorff(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query,
+                                    const HausdorffOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

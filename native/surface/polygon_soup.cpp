@@ -85,14 +85,16 @@ void append_raw(std::string& out, const T& value) {
 std::string encode_ply(const PolygonSoup& soup) {
   bool single = true;  // every coordinate is a float32
   for (const Vec3& p : soup.points)
-    for (int i = 0; i < 3; ++i) single = single && std::abs(p[i]) <= std::numeric_limits<float>::max() && static_cast<double>(static_cast<float>(p[i])) == p[i];
+    for (int i = 0; i < 3; ++i)
+      single = single && std::abs(p[i]) <= std::numeric_limits<float>::max() && static_cast<double>(static_cast<float>(p[i])) == p[i];
   std::int64_t largest = 0;
   for (std::size_t p = 0; p < soup.polygon_count(); ++p) largest = std::max(largest, soup.offsets[p + 1] - soup.offsets[p]);
   const bool short_count = largest <= 255;
   const std::string type = single ? "float" : "double";
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(soup.points.size()) + "\n";
   for (const char* axis : {"x", "y", "z"}) out += "property " + type + " " + axis + "\n";
-  out += "element face " + std::to_string(soup.polygon_count()) + "\nproperty list " + (short_count ? "uchar" : "int") + " int vertex_indices\nend_header\n";
+  out += "element face " + std::to_string(soup.polygon_count()) + "\nproperty list " + (short_count ? "uchar" : "int") +
+         " int vertex_indices\nend_header\n";
   out.reserve(out.size() + soup.points.size() * (single ? 12 : 24) + soup.polygon_count() * 4 + soup.indices.size() * 4);
   for (const Vec3& p : soup.points)
     for (int i = 0; i < 3; ++i) single ? append_raw(out, static_cast<float>(p[i])) : append_raw(out, p[i]);
@@ -158,10 +160,18 @@ PolygonSoup read_polygon_soup(std::string_view bytes, MeshFormat format, const s
   PolygonSoup soup;
   try {
     switch (format) {
-      case MeshFormat::Ply: soup = read_ply(bytes, name); break;
-      case MeshFormat::Obj: soup = read_obj(bytes, name); break;
-      case MeshFormat::Off: soup = read_off(bytes, name); break;
-      case MeshFormat::Stl: soup = read_stl(bytes, name); break;
+      case MeshFormat::Ply:
+        soup = read_ply(bytes, name);
+        break;
+      case MeshFormat::Obj:
+        soup = read_obj(bytes, name);
+        break;
+      case MeshFormat::Off:
+        soup = read_off(bytes, name);
+        break;
+      case MeshFormat::Stl:
+        soup = read_stl(bytes, name);
+        break;
     }
   } catch (const std::bad_alloc&) {
     throw Error(ErrorCode::Io, name + ": too large for the memory there is");

@@ -170,14 +170,30 @@ class BinaryBody {
   bool read(Scalar type, T& value) {
     if (left() < size_of(type)) return false;
     switch (type) {
-      case Scalar::Int8: value = static_cast<T>(take<std::int8_t>()); break;
-      case Scalar::UInt8: value = static_cast<T>(take<std::uint8_t>()); break;
-      case Scalar::Int16: value = static_cast<T>(take<std::int16_t>()); break;
-      case Scalar::UInt16: value = static_cast<T>(take<std::uint16_t>()); break;
-      case Scalar::Int32: value = static_cast<T>(take<std::int32_t>()); break;
-      case Scalar::UInt32: value = static_cast<T>(take<std::uint32_t>()); break;
-      case Scalar::Float32: value = from_floating<T>(take<float>()); break;
-      case Scalar::Float64: value = from_floating<T>(take<double>()); break;
+      case Scalar::Int8:
+        value = static_cast<T>(take<std::int8_t>());
+        break;
+      case Scalar::UInt8:
+        value = static_cast<T>(take<std::uint8_t>());
+        break;
+      case Scalar::Int16:
+        value = static_cast<T>(take<std::int16_t>());
+        break;
+      case Scalar::UInt16:
+        value = static_cast<T>(take<std::uint16_t>());
+        break;
+      case Scalar::Int32:
+        value = static_cast<T>(take<std::int32_t>());
+        break;
+      case Scalar::UInt32:
+        value = static_cast<T>(take<std::uint32_t>());
+        break;
+      case Scalar::Float32:
+        value = from_floating<T>(take<float>());
+        break;
+      case Scalar::Float64:
+        value = from_floating<T>(take<double>());
+        break;
     }
     return true;
   }
@@ -258,8 +274,8 @@ class BodyReader {
     std::uint64_t least = 0;
     for (const Property& property : element.properties) least += Body::least_size(property.count_type.value_or(property.type));
     if (least > 0 && body_.left() / least < element.count)
-      refuse_file(name_, "truncated: its header promises " + std::to_string(element.count) + " of " + quoted(element.name) +
-                             ", more than the file can hold");
+      refuse_file(
+          name_, "truncated: its header promises " + std::to_string(element.count) + " of " + quoted(element.name) + ", more than the file can hold");
   }
   void require(const Element& element, std::initializer_list<Role> roles, const char* names) {
     for (const Role role : roles) {

@@ -91,8 +91,7 @@ RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
     mesh.source.push_back(static_cast<int>(t));
   }
   mesh.mate.assign(3 * mesh.faces.size(), -1);
-  if (mesh.faces.empty())
-    throw Error(ErrorCode::InvalidInput, "all " + std::to_string(triangulation.triangles.size()) + " faces are degenerate");
+  if (mesh.faces.empty()) throw Error(ErrorCode::InvalidInput, "all " + std::to_string(triangulation.triangles.size()) + " faces are degenerate");
   return mesh;
 }
 

@@ -13,10 +13,10 @@ struct RepairOptions {
 
 // How much of each kind was changed; all zero for a clean input.
 struct RepairReport {
-  std::int64_t merged_points = 0;         // points at the same position as an earlier one
-  std::int64_t isolated_points = 0;       // points without a face
-  std::int64_t duplicate_faces = 0;       // left out; both of a pair of opposite faces where one alone would open a surface
-  std::int64_t degenerate_faces = 0;      // two corners coincide, or no area: left out, or flipped where leaving out would open a crack
+  std::int64_t merged_points = 0;     // points at the same position as an earlier one
+  std::int64_t isolated_points = 0;   // points without a face
+  std::int64_t duplicate_faces = 0;   // left out; both of a pair of opposite faces where one alone would open a surface
+  std::int64_t degenerate_faces = 0;  // two corners coincide, or no area: left out, or flipped where leaving out would open a crack
   std::int64_t reoriented_faces = 0;
   std::int64_t nonmanifold_edges = 0;     // edges of more than two faces, cut apart
   std::int64_t nonmanifold_vertices = 0;  // points at which parts of the surface touch that share no edge there, cut apart

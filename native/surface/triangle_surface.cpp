@@ -20,16 +20,17 @@ void connect_half_edges(TriangleSurface& surface) {
       throw Error(ErrorCode::InvalidInput, "a face has the point " + std::to_string(face[0] == face[1] ? face[0] : face[2]) + " twice");
   }
   const int half_edges = 3 * static_cast<int>(surface.faces.size());
-  const EdgeGroups edges =
-      group_edges(point_count, half_edges, [&](int h) { return surface.from(h); }, [&](int h) { return surface.to(h); });
+  const EdgeGroups edges = group_edges(
+      point_count, half_edges, [&](int h) { return surface.from(h); }, [&](int h) { return surface.to(h); });
   surface.opposite.assign(half_edges, -1);
   for (int e = 0; e < edges.count(); ++e) {
     if (edges.size(e) == 1) continue;
     const int h = edges.of(e)[0], g = edges.of(e)[1];
     const bool same_direction = surface.from(h) == surface.from(g);
     if (edges.size(e) > 2 || same_direction)
-      throw Error(ErrorCode::InvalidInput, "the edge " + std::to_string(surface.from(h)) + "-" + std::to_string(surface.to(h)) +
-                                               (edges.size(e) > 2 ? " has more than two faces" : " has two faces that run along it in the same direction"));
+      throw Error(ErrorCode::InvalidInput,
+                  "the edge " + std::to_string(surface.from(h)) + "-" + std::to_string(surface.to(h)) +
+                      (edges.size(e) > 2 ? " has more than two faces" : " has two faces that run along it in the same direction"));
     surface.opposite[h] = g;
     surface.opposite[g] = h;
   }

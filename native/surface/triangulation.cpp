@@ -225,7 +225,8 @@ Triangulation triangulate(const PolygonSoup& soup) {
     corners.clear();
     for (std::int64_t i = 0; i < n; ++i) corners.push_back(scaled(soup.points[index[i]], exponent));
     if (n == 4) {
-      const double first = flatness(corners[0], corners[1], corners[2], corners[3]), second = flatness(corners[1], corners[2], corners[3], corners[0]);
+      const double first = flatness(corners[0], corners[1], corners[2], corners[3]),
+                   second = flatness(corners[1], corners[2], corners[3], corners[0]);
       // Differences of rounding alone do not decide: a flat quad is the same surface either way.
       const bool equal = std::abs(first - second) < 1e-9;
       if (equal ? (corners[0] - corners[2]).squaredNorm() <= (corners[1] - corners[3]).squaredNorm() : first > second)

@@ -26,7 +26,8 @@ inline TriangleSurface unit(TriangleSurface s) {
 // Every patch is a disk whose rim is made of its four sides; sides are shared; the patches tile the surface.
 inline void expect_layout(const TriangleSurface& surface, const PatchedSurface& p) {
   double before = 0, after = 0;
-  for (const auto& f : surface.faces) before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  for (const auto& f : surface.faces)
+    before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
   for (const auto& f : p.mesh.faces) after += (p.mesh.points[f[1]] - p.mesh.points[f[0]]).cross(p.mesh.points[f[2]] - p.mesh.points[f[0]]).norm();
   EXPECT_NEAR(after, before, 1e-9 * before);
   std::vector<std::set<int>> vertices(p.patch_count());

@@ -86,7 +86,8 @@ class CoarseSurface {
 
 }  // namespace
 
-BaseDomain::BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress) : surface_(surface), decimated_(surface) {
+BaseDomain::BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress)
+    : surface_(surface), decimated_(surface) {
   DecimationOptions decimation;
   // Room for the clean-up of the quads, which merges some of them.
   decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(2.6 * options.size)});

@@ -12,30 +12,31 @@
 namespace hybrid_mesh {
 
 struct BaseDomainOptions {
-  double size = 300;                // of the base domain: its quads, plus `boundary_side` for each side on the surface's boundary
+  double size = 300;  // of the base domain: its quads, plus `boundary_side` for each side on the surface's boundary
   double boundary_side = 0;
-  int least = 0;                    // coarsening stops before there are fewer quads
+  int least = 0;  // coarsening stops before there are fewer quads
   std::uint64_t seed = 1;
 };
 
 // A surface, or a coarser version of it, cut into the patches of a base domain.
 struct CutSurface {
-  TriangleSurface coarse;        // source_face: face of the surface
-  PatchedSurface patches;        // of the coarse surface: points and faces name those of it
-  EditMesh collapsed;            // the surface's mesh, as coarse as the coarse surface
-  std::vector<int> log;          // the half-edge collapses that made it so; empty if the coarse surface is the surface
-  std::vector<int> vertex;       // per point of the coarse surface: that of the surface
+  TriangleSurface coarse;   // source_face: face of the surface
+  PatchedSurface patches;   // of the coarse surface: points and faces name those of it
+  EditMesh collapsed;       // the surface's mesh, as coarse as the coarse surface
+  std::vector<int> log;     // the half-edge collapses that made it so; empty if the coarse surface is the surface
+  std::vector<int> vertex;  // per point of the coarse surface: that of the surface
 };
 
-// A quadrilateral base domain for a surface, found by decimating it. The size is not exceeded unless the surface's topology asks for more. Any genus, components, boundary
-// loops. Keeps a reference to the surface, which is scaled to a unit bounding-box diagonal.
+// A quadrilateral base domain for a surface, found by decimating it. The size is not exceeded unless the surface's topology asks for more. Any genus,
+// components, boundary loops. Keeps a reference to the surface, which is scaled to a unit bounding-box diagonal.
 class BaseDomain {
  public:
   BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress);
 
   int quads() const { return static_cast<int>(layout_.quads.size()); }
   int boundary_sides() const;
-  // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts it along them.
+  // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts
+  // it along them.
   CutSurface cut(double vertices_a_quad, const Progress& progress) const;
 
  private:

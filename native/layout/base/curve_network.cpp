@@ -226,7 +226,8 @@ void CurveNetwork::draw(const std::vector<Vec2>& uv) {
   }
 }
 
-PatchedSurface cut_along_layout(const TriangleSurface& surface, EditMesh& mesh, const std::vector<MeshEdit>& log, const QuadLayout& layout, const Progress& progress) {
+PatchedSurface cut_along_layout(const TriangleSurface& surface, EditMesh& mesh, const std::vector<MeshEdit>& log, const QuadLayout& layout,
+                                const Progress& progress) {
   CurveNetwork network(surface, mesh, layout);
   for (std::size_t i = log.size(); i-- > 0;) {
     if (i % 1024 == 0) progress(0.7 * (1 - static_cast<double>(i) / log.size()));

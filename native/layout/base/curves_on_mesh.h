@@ -49,10 +49,10 @@ class CurveNetwork {
   };
   struct Chord {
     int curve;
-    int from, to;                  // stations, in the curve's direction
+    int from, to;                    // stations, in the curve's direction
     int from_crossing, to_crossing;  // -1: the curve's end
-    int low = 0, span = 0;         // the arc that the new vertex does not see: stations low .. low + span
-    bool forward = true;           // the arc runs from `from` to `to`
+    int low = 0, span = 0;           // the arc that the new vertex does not see: stations low .. low + span
+    bool forward = true;             // the arc runs from `from` to `to`
   };
 
   // --- links of the curves ---------------------------------------------------------------------------------------------------
@@ -87,7 +87,8 @@ class CurveNetwork {
     (previous >= 0 ? crossings_[previous].next : first_[curve]) = n;
     (next >= 0 ? crossings_[next].previous : last_[curve]) = n;
   }
-  // Shortens the curve at the link that follows `p` (-1: its start) as long as it leaves and re-enters an edge, runs beside a corner or along an edge.
+  // Shortens the curve at the link that follows `p` (-1: its start) as long as it leaves and re-enters an edge, runs beside a corner or along an
+  // edge.
   void simplify(int curve, int p) {
     for (;;) {
       const int q = p >= 0 ? crossings_[p].next : first_[curve];
@@ -131,8 +132,8 @@ class CurveNetwork {
     }
   }
 
-  // The chords of a polygon whose boundary edges are the half-edges `sides_` (interior on the left), with `ring_` their starts; open: the last ring vertex has
-  // no side.
+  // The chords of a polygon whose boundary edges are the half-edges `sides_` (interior on the left), with `ring_` their starts; open: the last ring
+  // vertex has no side.
   void collect(bool closed) {
     stations_.clear();
     chords_.clear();
@@ -205,8 +206,10 @@ class CurveNetwork {
     for (const Chord& c : chords_) {
       if (c.from_crossing < 0 || is_linked(c.from_crossing)) simplify(c.curve, c.from_crossing);
       if (first_[c.curve] < 0) continue;
-      if (c.to_crossing < 0) simplify(c.curve, last_[c.curve]);
-      else if (is_linked(c.to_crossing)) simplify(c.curve, crossings_[c.to_crossing].previous);
+      if (c.to_crossing < 0)
+        simplify(c.curve, last_[c.curve]);
+      else if (is_linked(c.to_crossing))
+        simplify(c.curve, crossings_[c.to_crossing].previous);
     }
   }
 

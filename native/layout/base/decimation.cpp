@@ -53,7 +53,8 @@ class Decimation {
       }
       if (heap_.empty()) break;
       if (++steps % 512 == 0)
-        progress(std::clamp((std::log(initial) - std::log(mesh_.face_count)) / std::max(1e-9, std::log(initial) - std::log(options_.target_faces)), 0.0, 1.0));
+        progress(std::clamp((std::log(initial) - std::log(mesh_.face_count)) / std::max(1e-9, std::log(initial) - std::log(options_.target_faces)),
+                            0.0, 1.0));
       const Candidate best = heap_.top();
       heap_.pop();
       if (!mesh_.vertex_alive(best.vertex) || best.stamp != stamps_[best.vertex]) continue;
@@ -143,13 +144,14 @@ class Decimation {
   // On a boundary that is to be left with the fixed vertices only.
   bool is_loose(int v) const { return !options_.fixed.empty() && !options_.fixed[v] && mesh_.is_boundary(v); }
 
-  // Would an inner edge join two vertices of one boundary loop? A map of the surface at this stage could give a triangle between it and the boundary no area, where a straight side of
-  // the base runs along it. What only decides on the base, from the first flips on, may have such edges.
+  // Would an inner edge join two vertices of one boundary loop? A map of the surface at this stage could give a triangle between it and the boundary
+  // no area, where a straight side of the base runs along it. What only decides on the base, from the first flips on, may have such edges.
   bool makes_chord(int h) {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
     if (loop_.empty() || flipped_ || loop_[u] < 0 || loop_[v] >= 0) return false;
     mesh_.ring(v, around_);
-    return std::any_of(around_.begin(), around_.end(), [&](int w) { return loop_[w] == loop_[u] && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
+    return std::any_of(around_.begin(), around_.end(),
+                       [&](int w) { return loop_[w] == loop_[u] && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
   }
 
   void push(int v) {
@@ -164,7 +166,8 @@ class Decimation {
       g = n;
     } while (g != mesh_.out[v]);
     // The cheapest allowed one; the topological test is dearer than the cost of most.
-    std::sort(scratch_.begin(), scratch_.end(), [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.half_edge < b.half_edge; });
+    std::sort(scratch_.begin(), scratch_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.half_edge < b.half_edge; });
     for (const Candidate& c : scratch_)
       if (mesh_.can_collapse(c.half_edge) && !makes_chord(c.half_edge)) {
         heap_.push(c);

@@ -21,7 +21,8 @@ struct DecimationOptions {
   int target_faces = 600;
   double evenness = 0.005;  // weight of the longest new edge squared against the squared distance to the surface
   std::uint64_t seed = 1;   // breaks near-ties only
-  std::vector<char> fixed;  // per vertex: stays; all other boundary vertices go, whatever the number of faces. Empty: none is fixed, and the boundary is simplified with the rest
+  std::vector<char> fixed;  // per vertex: stays; all other boundary vertices go, whatever the number of faces. Empty: none is fixed, and the boundary
+                            // is simplified with the rest
 };
 
 // Collapses and flips `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are

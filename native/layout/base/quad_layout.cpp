@@ -21,7 +21,8 @@ struct Corners {
 
 class QuadCoarsening {
  public:
-  QuadCoarsening(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options, std::vector<MeshEdit>& log)
+  QuadCoarsening(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,
+                 std::vector<MeshEdit>& log)
       : mesh_(mesh), points_(points), quadrics_(std::move(quadrics)), options_(options), log_(log) {}
 
   QuadLayout run(const Progress& progress) {

@@ -29,16 +29,18 @@ struct QuadLayout {
 };
 
 struct QuadLayoutOptions {
-  double size = 300;         // quads, plus `boundary_side` for each side on the boundary; not exceeded where the topology allows
+  double size = 300;  // quads, plus `boundary_side` for each side on the boundary; not exceeded where the topology allows
   double boundary_side = 0;
-  int least = 0;             // coarsening stops before there are fewer quads
+  int least = 0;  // coarsening stops before there are fewer quads
   std::uint64_t seed = 1;
-  std::vector<int> boundary_quads;  // per vertex on the boundary: how many quads are to meet there; the boundary stays as it is. Empty: two, and nodes may be added between
+  std::vector<int> boundary_quads;  // per vertex on the boundary: how many quads are to meet there; the boundary stays as it is. Empty: two, and
+                                    // nodes may be added between
 };
 
-// Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until the size asked for is reached.
-// All is done by flips and collapses of `mesh`, appended to `log`. Every triangle finds a mate: on a closed mesh the dual is cubic and bridgeless (Petersen); one with
-// boundary is doubled along it, and a triangle whose mate is its own double becomes a quad by a node on its boundary edge.
+// Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until the
+// size asked for is reached. All is done by flips and collapses of `mesh`, appended to `log`. Every triangle finds a mate: on a closed mesh the dual
+// is cubic and bridgeless (Petersen); one with boundary is doubled along it, and a triangle whose mate is its own double becomes a quad by a node on
+// its boundary edge.
 QuadLayout make_quad_layout(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,
                             std::vector<MeshEdit>& log, const Progress& progress);
 

@@ -23,8 +23,8 @@ struct Quadric {
     bx += o.bx, by += o.by, bz += o.bz, c += o.c;
   }
   double operator()(const Vec3& p) const {
-    const double e = p.x() * (xx * p.x() + 2 * (xy * p.y() + xz * p.z() + bx)) + p.y() * (yy * p.y() + 2 * (yz * p.z() + by)) +
-                     p.z() * (zz * p.z() + 2 * bz) + c;
+    const double e =
+        p.x() * (xx * p.x() + 2 * (xy * p.y() + xz * p.z() + bx)) + p.y() * (yy * p.y() + 2 * (yz * p.z() + by)) + p.z() * (zz * p.z() + 2 * bz) + c;
     return std::max(e, 0.0);
   }
 };

@@ -109,7 +109,8 @@ void SurfaceCurves::find_cells(int f, FaceCells& out) const {
     const int crossing = up ? here.crossing : next.crossing;
     int rank = 0;
     if (crossing >= 0) rank = static_cast<int>(std::find(on_edge_[e].begin(), on_edge_[e].end(), crossing) - on_edge_[e].begin()) + 1;
-    out.gaps.push_back({h, rank, crossing, here.corner >= 0 ? 0 : here.weights[(side + 1) % 3], next.corner >= 0 ? 1 : next.weights[(side + 1) % 3], cell(of)});
+    out.gaps.push_back(
+        {h, rank, crossing, here.corner >= 0 ? 0 : here.weights[(side + 1) % 3], next.corner >= 0 ? 1 : next.weights[(side + 1) % 3], cell(of)});
   }
 }
 
@@ -209,7 +210,8 @@ const char* SurfaceCurves::find_defect() const {
       const Crossing& x = crossings_[n];
       if (x.curve != static_cast<int>(c) || x.previous != previous || !listed[n]) return "a curve's crossings are not linked";
       const int face = leaving(n) / 3;
-      if (previous < 0 ? mesh_.apex(leaving(n)) != curve.start : mesh_.opposite[leaving(previous)] / 3 != face) return "a curve goes from one face to another without crossing";
+      if (previous < 0 ? mesh_.apex(leaving(n)) != curve.start : mesh_.opposite[leaving(previous)] / 3 != face)
+        return "a curve goes from one face to another without crossing";
       if (previous >= 0 && crossings_[previous].edge == x.edge) return "a curve leaves a face where it came in";
       previous = n;
     }

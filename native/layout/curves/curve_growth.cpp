@@ -70,7 +70,8 @@ int SurfaceCurves::split_face(int f, const std::array<double, 3>& weights, const
   const int count = static_cast<int>(stations.size());
   const std::array<int, 3> corners{mesh_.from(3 * f), mesh_.from(3 * f + 1), mesh_.from(3 * f + 2)};
 
-  // The arc of the face's rim that a chord takes from the new vertex's sight: with as few as possible of the ends of the curves that are to end there.
+  // The arc of the face's rim that a chord takes from the new vertex's sight: with as few as possible of the ends of the curves that are to end
+  // there.
   struct Arc {
     int chord, low, span;
     bool forward;
@@ -160,7 +161,8 @@ int SurfaceCurves::split_edge(int h, double t, int through) {
   }
   before.erase(middle, before.end());
 
-  // What crosses the new edges from the apexes to the vertex: chords from one part of the rim to the other, those that cut off the shorter arc at the apex first.
+  // What crosses the new edges from the apexes to the vertex: chords from one part of the rim to the other, those that cut off the shorter arc at the
+  // apex first.
   struct Hit {
     int key;
     Chord chord;
@@ -175,7 +177,8 @@ int SurfaceCurves::split_edge(int h, double t, int through) {
     while (poly.stations[first].corner != apex) ++first;
     std::array<double, 3> x{0, 0, 0}, top{0, 0, 0};
     x[i] = 1 - at, x[(i + 1) % 3] = at, top[apex] = 1;
-    // Counted from the apex: 0, then the part of the side's start up to `limit`, then that of its end. The chord's ends at the vertex itself and at the apex cross nothing.
+    // Counted from the apex: 0, then the part of the side's start up to `limit`, then that of its end. The chord's ends at the vertex itself and at
+    // the apex cross nothing.
     const std::vector<int>& near = side == h ? before : after;
     int limit = 0;
     while (poly.stations[(first + limit) % count].corner != i) ++limit;
@@ -184,7 +187,8 @@ int SurfaceCurves::split_edge(int h, double t, int through) {
       if (through >= 0 && (c.from_crossing == through || c.to_crossing == through)) continue;
       const int p = (c.from - first + count) % count, q = (c.to - first + count) % count;
       if (p == 0 || q == 0 || (p <= limit) == (q <= limit)) continue;
-      hits.push_back({std::min(p, q) + count - std::max(p, q), c, p < q, meeting(poly.stations[c.from].weights, poly.stations[c.to].weights, top, x)});
+      hits.push_back(
+          {std::min(p, q) + count - std::max(p, q), c, p < q, meeting(poly.stations[c.from].weights, poly.stations[c.to].weights, top, x)});
     }
     std::stable_sort(hits.begin(), hits.end(), [](const Hit& l, const Hit& r) { return l.key < r.key; });
     return hits;

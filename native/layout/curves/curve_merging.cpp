@@ -13,8 +13,8 @@ void SurfaceCurves::open_end(const End& end) {
   clear_along(end.curve);
 }
 
-// Leads the curve that ends with `end` at a vertex on to the other end of the curve that leaves the vertex with `guide`: around the vertex clockwise up to the guide, then along it
-// on its left. `before`: both leave through one face, `end` clockwise of the guide, so that the way is a full turn.
+// Leads the curve that ends with `end` at a vertex on to the other end of the curve that leaves the vertex with `guide`: around the vertex clockwise
+// up to the guide, then along it on its left. `before`: both leave through one face, `end` clockwise of the guide, so that the way is a full turn.
 void SurfaceCurves::extend(const End& end, const End& guide, bool before) {
   const int c = end.curve, v = mesh_.from(end.spoke);
   // The spokes counter-clockwise from the guide to the curve.

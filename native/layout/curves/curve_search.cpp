@@ -14,17 +14,20 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr std::array<double, 3> kSamples{0.15, 0.5, 0.85};  // of a gap
-constexpr double kCrossingCost = 0.3;  // of the diagonal, at most the guide's length: a way that has to cross curves crosses no more than that makes worth while
-constexpr double kMostDetour = 4;      // guides' lengths: a longer way that respects the curves is not looked for, or the whole surface would be searched wherever there is none
-constexpr double kDetourCost = 8;      // a way far from its guide counts as so many times longer
-constexpr double kFar = 0.05;          // of the diagonal
+constexpr double kCrossingCost =
+    0.3;  // of the diagonal, at most the guide's length: a way that has to cross curves crosses no more than that makes worth while
+constexpr double kMostDetour =
+    4;  // guides' lengths: a longer way that respects the curves is not looked for, or the whole surface would be searched wherever there is none
+constexpr double kDetourCost = 8;  // a way far from its guide counts as so many times longer
+constexpr double kFar = 0.05;      // of the diagonal
 
 }  // namespace
 
 // The best state known for a gap, -1: none yet.
 int& CurveSearch::best(const SurfaceCurves::Gap& gap, int sample) {
   if (gap.rank > 0) {
-    const std::uint64_t key = (static_cast<std::uint64_t>(gap.half_edge) << 26) | (static_cast<std::uint64_t>(gap.rank) << 2) | static_cast<std::uint64_t>(sample);
+    const std::uint64_t key =
+        (static_cast<std::uint64_t>(gap.half_edge) << 26) | (static_cast<std::uint64_t>(gap.rank) << 2) | static_cast<std::uint64_t>(sample);
     return best_.insert({key, -1}).first->second;
   }
   auto& [search, state] = best_first_[kSamples.size() * gap.half_edge + sample];
@@ -60,7 +63,8 @@ void CurveSearch::reach(const SurfaceCurves::Gap& gap, int previous, const Vec3&
 // Over a side that is a curve.
 void CurveSearch::reach_over(int h, int previous, const Vec3& from, double cost) {
   const int c = curves_.along(curves_.mesh().edge[h]);
-  if (barriers_ == Barriers::Cross && c >= 0 && curves_.mesh().opposite[h] >= 0) reach({h, 0, -1, 0, 1, -1}, previous, from, cost + crossing_cost_, c);
+  if (barriers_ == Barriers::Cross && c >= 0 && curves_.mesh().opposite[h] >= 0)
+    reach({h, 0, -1, 0, 1, -1}, previous, from, cost + crossing_cost_, c);
 }
 
 void CurveSearch::leave(int a, const CurveSector& sector) {
@@ -104,7 +108,8 @@ void CurveSearch::go_on(int i) {
   for (const int side : {EditMesh::next(o), EditMesh::prev(o)}) reach_over(side, i, state.at, state.cost);
 }
 
-std::optional<CurveWay> CurveSearch::operator()(int a, int b, const CurveSector& leaving, const CurveSector& arriving, std::vector<Vec3> guide, Barriers barriers) {
+std::optional<CurveWay> CurveSearch::operator()(int a, int b, const CurveSector& leaving, const CurveSector& arriving, std::vector<Vec3> guide,
+                                                Barriers barriers) {
   const EditMesh& mesh = curves_.mesh();
   barriers_ = barriers;
   guide_ = std::move(guide);

@@ -32,7 +32,8 @@ class CurveSearch {
   explicit CurveSearch(const SurfaceCurves& curves) : curves_(curves) {}
 
   // From vertex a to b, leaving and arriving in the given sectors; near a line in space if one is given. Nothing if there is no way.
-  std::optional<CurveWay> operator()(int a, int b, const CurveSector& leaving, const CurveSector& arriving, std::vector<Vec3> guide, Barriers barriers);
+  std::optional<CurveWay> operator()(int a, int b, const CurveSector& leaving, const CurveSector& arriving, std::vector<Vec3> guide,
+                                     Barriers barriers);
 
  private:
   // A gap that the way goes through, at one of a few points of it.
@@ -66,12 +67,12 @@ class CurveSearch {
   Vec3 target_;
   double crossing_cost_ = 0;
   std::vector<State> states_;
-  std::vector<Entry> queue_;                        // a heap
-  SurfaceCurves::FaceCells cells_;                  // of the face that was entered last
+  std::vector<Entry> queue_;        // a heap
+  SurfaceCurves::FaceCells cells_;  // of the face that was entered last
   int cell_ = -1;
   int number_ = 0;
-  std::vector<std::pair<int, int>> best_first_;     // per half-edge and sample, for the first gap of an edge: number of the search, state
-  std::unordered_map<std::uint64_t, int> best_;     // for others
+  std::vector<std::pair<int, int>> best_first_;  // per half-edge and sample, for the first gap of an edge: number of the search, state
+  std::unordered_map<std::uint64_t, int> best_;  // for others
 };
 
 }  // namespace hybrid_mesh

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Based on: Xin, Wang, Efficiently determining a locally exact shortest path on polyhedral surfaces, 2007 (the shortest way through a strip of faces, which then passes over the
-// vertices where it bends, until no strip gives a shorter one).
+// Based on: Xin, Wang, Efficiently determining a locally exact shortest path on polyhedral surfaces, 2007 (the shortest way through a strip of faces,
+// which then passes over the vertices where it bends, until no strip gives a shorter one).
 #include "layout/curves/curve_tightening.h"
 
 #include <Eigen/Geometry>
@@ -93,7 +93,8 @@ bool CurveTightener::pass_vertices(int c, const FaceStrip& strip) {
     const int stop = bend.left ? mesh.opposite[half_edges_[last]] : half_edges_[last];
     std::vector<int> way;
     if (last - first + 1 < mesh.valence(v))
-      for (int g = bend.left ? mesh.cw(begin) : mesh.ccw(begin); g != stop; g = bend.left ? mesh.cw(g) : mesh.ccw(g)) way.push_back(bend.left ? g : mesh.opposite[g]);
+      for (int g = bend.left ? mesh.cw(begin) : mesh.ccw(begin); g != stop; g = bend.left ? mesh.cw(g) : mesh.ccw(g))
+        way.push_back(bend.left ? g : mesh.opposite[g]);
     int previous = curves_.crossing(crossings_[first]).previous;
     for (const int h : way) previous = curves_.insert_nearest(c, previous, h, v);
     for (int i = first; i <= last; ++i) {

@@ -9,7 +9,8 @@
 
 namespace hybrid_mesh {
 
-// Shortens curves on a surface to geodesics, their ends held, within the room that other curves and vertices with curve ends leave them: no curve ever passes over another.
+// Shortens curves on a surface to geodesics, their ends held, within the room that other curves and vertices with curve ends leave them: no curve
+// ever passes over another.
 class CurveTightener {
  public:
   // `fixed`: per curve, those that stay as they are; others are led around where these cross an edge.

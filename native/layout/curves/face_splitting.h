@@ -13,10 +13,10 @@ namespace hybrid_mesh {
 
 // A corner of the triangle, or a point where a curve crosses one of its sides.
 struct PieceCorner {
-  int point;    // index of the point
-  int mark;     // the curve along the polygon's edge to the next corner, -1: none
-  Vec2 at;      // in a reference triangle
-  int sides;    // bit set of the triangle's sides that hold it
+  int point;  // index of the point
+  int mark;   // the curve along the polygon's edge to the next corner, -1: none
+  Vec2 at;    // in a reference triangle
+  int sides;  // bit set of the triangle's sides that hold it
 };
 
 // A curve's way across the triangle, between two corners of the polygon.
@@ -25,8 +25,8 @@ struct FaceChord {
   int curve;
 };
 
-// Splits a convex polygon with corners on the sides of one triangle into triangles none of which lies along one side. `emit` gets three corners and the marks of the edges
-// that follow them.
+// Splits a convex polygon with corners on the sides of one triangle into triangles none of which lies along one side. `emit` gets three corners and
+// the marks of the edges that follow them.
 template <class Emit>
 void split_piece(std::vector<PieceCorner> polygon, const Emit& emit) {
   while (polygon.size() > 3) {
@@ -61,7 +61,8 @@ void split_along_chords(std::vector<PieceCorner> polygon, const std::vector<Face
   // Cut off the shortest arc first: what lies below it holds no other chord.
   std::vector<int> order(chords.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::pair(chords[a].high - chords[a].low, a) < std::pair(chords[b].high - chords[b].low, b); });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return std::pair(chords[a].high - chords[a].low, a) < std::pair(chords[b].high - chords[b].low, b); });
   std::vector<int> left(polygon.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<int>(i);
   for (const int i : order) {

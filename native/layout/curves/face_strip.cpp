@@ -108,7 +108,8 @@ double FaceStrip::length() const {
 }
 
 double FaceStrip::turn(std::size_t bend) const {
-  const Vec2 in = bends_[bend].at - (bend > 0 ? bends_[bend - 1].at : start_), out = (bend + 1 < bends_.size() ? bends_[bend + 1].at : end_) - bends_[bend].at;
+  const Vec2 in = bends_[bend].at - (bend > 0 ? bends_[bend - 1].at : start_),
+             out = (bend + 1 < bends_.size() ? bends_[bend + 1].at : end_) - bends_[bend].at;
   return std::abs(std::atan2(cross(in, out), in.dot(out)));
 }
 

@@ -32,8 +32,8 @@ class FaceStrip {
   const std::vector<Portal>& portals() const { return portals_; }
   const std::vector<Bend>& bends() const { return bends_; }
   double length() const;
-  double turn(std::size_t bend) const;      // the angle by which the way turns there
-  std::vector<double> fractions() const;    // where the way crosses the portals, from their starts
+  double turn(std::size_t bend) const;    // the angle by which the way turns there
+  std::vector<double> fractions() const;  // where the way crosses the portals, from their starts
 
  private:
   Vec2 start_, end_;

@@ -69,7 +69,8 @@ std::vector<SurfaceCurves::End> SurfaceCurves::ends_at(int v) const {
       const Crossing& x = crossings_[n];
       // One that was led past v and is not simplified yet may end at another corner.
       const bool at_start = x.next_left != up;
-      if ((at_start ? x.previous : x.next) < 0 && (at_start ? curves_[x.curve].start : curves_[x.curve].end) == v) ends.push_back({x.curve, at_start, g, false});
+      if ((at_start ? x.previous : x.next) < 0 && (at_start ? curves_[x.curve].start : curves_[x.curve].end) == v)
+        ends.push_back({x.curve, at_start, g, false});
     }
     g = mesh_.ccw(g);
   } while (g >= 0 && g != mesh_.out[v]);

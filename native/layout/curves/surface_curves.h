@@ -13,20 +13,22 @@ namespace hybrid_mesh {
 
 // A surface split along curves, which are chains of its edges.
 struct CutMesh {
-  TriangleSurface mesh;                   // source_face: face of the surface
-  std::vector<PointSource> source;        // per point
-  std::vector<int> curve;                 // per half-edge: the curve along it, -1: none
-  std::vector<std::vector<int>> chains;   // per curve: its points from start to end; empty for one that was removed
+  TriangleSurface mesh;                  // source_face: face of the surface
+  std::vector<PointSource> source;       // per point
+  std::vector<int> curve;                // per half-edge: the curve along it, -1: none
+  std::vector<std::vector<int>> chains;  // per curve: its points from start to end; empty for one that was removed
 };
 
-// Curves on a triangle surface. Every curve begins and ends at a vertex and is otherwise an ordered list of crossings of edges; each edge has the ordered list of the crossings on it.
-// So whether two curves cross is a matter of order alone: within a face, they do if their ends on its sides alternate. Vertices are put in where curves are to begin, end or meet.
+// Curves on a triangle surface. Every curve begins and ends at a vertex and is otherwise an ordered list of crossings of edges; each edge has the
+// ordered list of the crossings on it. So whether two curves cross is a matter of order alone: within a face, they do if their ends on its sides
+// alternate. Vertices are put in where curves are to begin, end or meet.
 //
-// Invariants: a curve crosses no edge of the boundary; it never leaves a face by the side it came in by, nor beside the vertex that it begins or ends at; one without crossings
-// is an inner edge, which no other curve crosses or is (after resolve_crossings).
+// Invariants: a curve crosses no edge of the boundary; it never leaves a face by the side it came in by, nor beside the vertex that it begins or ends
+// at; one without crossings is an inner edge, which no other curve crosses or is (after resolve_crossings).
 class SurfaceCurves {
  public:
-  // Edges are oriented from their smaller to their larger vertex: t in (0, 1) runs that way, and next_left says whether the curve goes on to the left of the edge.
+  // Edges are oriented from their smaller to their larger vertex: t in (0, 1) runs that way, and next_left says whether the curve goes on to the left
+  // of the edge.
   struct Crossing {
     int curve = -1, previous = -1, next = -1;
     int edge = -1;
@@ -54,7 +56,8 @@ class SurfaceCurves {
     double t;
   };
 
-  // A part of a face's side between two crossings: `from` and `to` are fractions of the half-edge, `below` the crossing that it follows in the edge's list (-1: none).
+  // A part of a face's side between two crossings: `from` and `to` are fractions of the half-edge, `below` the crossing that it follows in the edge's
+  // list (-1: none).
   struct Gap {
     int half_edge, rank, below;  // rank: its number on the edge, from the smaller vertex on
     double from, to;
@@ -104,8 +107,8 @@ class SurfaceCurves {
   int split_curve(int n);
 
   // --- curves ------------------------------------------------------------------------------------------------------------------
-  // Adds a curve that may cross others and itself. Steps beside its ends and there and back are left out. Returns -1 if nothing is left, or if what is left is an edge that is a
-  // curve already.
+  // Adds a curve that may cross others and itself. Steps beside its ends and there and back are left out. Returns -1 if nothing is left, or if what
+  // is left is an edge that is a curve already.
   int add(int start, int end, const std::vector<Step>& steps, int stroke);
   // Adds a curve through gaps. Returns -1 if nothing is left of it.
   int add(int start, int end, const std::vector<Gap>& gaps, int stroke);
@@ -117,19 +120,24 @@ class SurfaceCurves {
   // Moves all other curve ends at inner vertex v, an end of curve c, along c to its other end, side by side in their order, and removes c.
   // Curves that vanish by that, or coincide with another, are removed.
   void contract(int c, int v);
-  // The same for a boundary vertex along the boundary: to the vertex that the boundary (which has the surface on its left) leads to, or backward. No other curve ends in between.
+  // The same for a boundary vertex along the boundary: to the vertex that the boundary (which has the surface on its left) leads to, or backward. No
+  // other curve ends in between.
   void slide(int v, int to, bool forward);
   // Joins the two curves that end at an inner vertex to one. False if they are not two, or one and the same.
   bool dissolve(int v);
 
   // --- for what moves curves ---------------------------------------------------------------------------------------------------
-  // Crosses half-edge h, leaving its face, right after crossing `previous` of the curve (-1: at its start); in the edge's list right after crossing `below` (-1: first).
+  // Crosses half-edge h, leaving its face, right after crossing `previous` of the curve (-1: at its start); in the edge's list right after crossing
+  // `below` (-1: first).
   int insert(int c, int previous, int h, int below, double t);
   int insert_nearest(int c, int previous, int h, int v);  // nearest to vertex v, an end of h
   void erase(int n);
-  bool is_nearest(int n, int v) const { return v == low(crossings_[n].edge) ? on_edge_[crossings_[n].edge].front() == n : on_edge_[crossings_[n].edge].back() == n; }
+  bool is_nearest(int n, int v) const {
+    return v == low(crossings_[n].edge) ? on_edge_[crossings_[n].edge].front() == n : on_edge_[crossings_[n].edge].back() == n;
+  }
   void set_t(int n, double t) { crossings_[n].t = t; }
-  // Takes out what the invariants forbid. False if the curve has nothing left, is an edge of the boundary, or coincides with another: then it is removed.
+  // Takes out what the invariants forbid. False if the curve has nothing left, is an edge of the boundary, or coincides with another: then it is
+  // removed.
   bool simplify(int c);
   // The half-edge by which a crossing's curve leaves a face, with the face on its left.
   int leaving(int n) const;
@@ -151,8 +159,8 @@ class SurfaceCurves {
   // A curve's way through a face, between two stations.
   struct Chord {
     int curve = -1;
-    int from = -1, to = -1;                      // in the curve's direction
-    int from_crossing = -1, to_crossing = -1;    // -1: the curve's end
+    int from = -1, to = -1;                    // in the curve's direction
+    int from_crossing = -1, to_crossing = -1;  // -1: the curve's end
   };
   struct FacePolygon {
     std::vector<Station> stations;
@@ -186,7 +194,7 @@ class SurfaceCurves {
   std::vector<Vec3> points_;
   std::vector<PointSource> source_;
   std::vector<int> source_face_;
-  std::vector<int> half_edge_;             // per edge: one of its half-edges
+  std::vector<int> half_edge_;  // per edge: one of its half-edges
   std::vector<Crossing> crossings_;
   std::vector<int> free_;
   std::vector<Curve> curves_;

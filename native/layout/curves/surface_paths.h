@@ -24,7 +24,9 @@ class SurfacePaths {
  public:
   SurfacePaths(const EditMesh& mesh, const std::vector<Vec3>& points) : mesh_(mesh), points_(points) {}
 
-  std::array<Vec3, 3> corners(int face) const { return {points_[mesh_.from(3 * face)], points_[mesh_.from(3 * face + 1)], points_[mesh_.from(3 * face + 2)]}; }
+  std::array<Vec3, 3> corners(int face) const {
+    return {points_[mesh_.from(3 * face)], points_[mesh_.from(3 * face + 1)], points_[mesh_.from(3 * face + 2)]};
+  }
   // The point nearest to p on the faces around `guess`, which is not far from it.
   FacePoint locate(const Vec3& p, int guess);
   // A short way between two points: the edges that it crosses, and where. Nothing if there is none of at most length `most`.

@@ -38,7 +38,7 @@ class VertexPlacing {
   SurfacePaths paths_;
   std::vector<BoundaryEdge> boundary_;
   int loops_ = 0;
-  std::vector<char> taken_;    // per vertex
+  std::vector<char> taken_;  // per vertex
 };
 
 }  // namespace hybrid_mesh

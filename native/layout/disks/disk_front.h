@@ -13,7 +13,8 @@ namespace hybrid_mesh {
 class DiskFront {
  public:
   explicit DiskFront(const std::vector<int>& quads_at) : boundary_nodes_(static_cast<int>(quads_at.size())), length_(boundary_nodes_) {
-    for (int i = 0; i < boundary_nodes_; ++i) nodes_.push_back({(i + 1) % boundary_nodes_, (i + boundary_nodes_ - 1) % boundary_nodes_, quads_at[i], 0, 0, i, i, true});
+    for (int i = 0; i < boundary_nodes_; ++i)
+      nodes_.push_back({(i + 1) % boundary_nodes_, (i + boundary_nodes_ - 1) % boundary_nodes_, quads_at[i], 0, 0, i, i, true});
   }
 
   bool done() const { return length_ == 0; }
@@ -59,7 +60,8 @@ class DiskFront {
   void join_last_edges();
   // Lays quads along the whole front: closes all its nodes, corners first. False if what they lack contradicts each other.
   bool lay_ring();
-  // Fills a front that turns by 4, 3 or 5 right angles with regular nodes and, for the latter two, one inner node of three or five quads. False if that cannot be.
+  // Fills a front that turns by 4, 3 or 5 right angles with regular nodes and, for the latter two, one inner node of three or five quads. False if
+  // that cannot be.
   bool fill();
   DiskLayout layout() const;
 
@@ -68,8 +70,8 @@ class DiskFront {
     int next, before;
     int total, used;  // quads around it in the end, so far
     int ring;
-    int same_as;      // itself, or the node that it became one with
-    int origin;       // a boundary node near it
+    int same_as;  // itself, or the node that it became one with
+    int origin;   // a boundary node near it
     bool on_boundary;
   };
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Based on: Takayama, Panozzo, Sorkine-Hornung, Pattern-Based Quadrangulation for N-Sided Patches, 2014 (a boundary's wishes are kept, and a small pattern of irregular nodes is
-// looked for inside).
+// Based on: Takayama, Panozzo, Sorkine-Hornung, Pattern-Based Quadrangulation for N-Sided Patches, 2014 (a boundary's wishes are kept, and a small
+// pattern of irregular nodes is looked for inside).
 //
-// Quads are laid from the boundary inwards. A node of the front (the boundary of what is still empty) knows how many quads it lacks: where it lacks one, a quad closes the corner;
-// where it lacks none, its two edges are one. The front turns by 2 - lacking right angles at a node, and by some number T in all, which no closed corner changes. Three kinds of
-// fronts are filled without a choice: T = 4 by a piece of the regular grid, T = 3 and T = 5 by one with a single inner node of three or five quads, whose place follows from the
-// front, as the point that a walk along it turns around. Each inner node with one quad more or fewer than four changes T by one, so |4 - T| of them are needed at least. One ring
-// of quads along the boundary keeps the wishes; the nodes of the ring then are free to take one more or fewer until what is inside is of the three kinds.
+// Quads are laid from the boundary inwards. A node of the front (the boundary of what is still empty) knows how many quads it lacks: where it lacks
+// one, a quad closes the corner; where it lacks none, its two edges are one. The front turns by 2 - lacking right angles at a node, and by some
+// number T in all, which no closed corner changes. Three kinds of fronts are filled without a choice: T = 4 by a piece of the regular grid, T = 3 and
+// T = 5 by one with a single inner node of three or five quads, whose place follows from the front, as the point that a walk along it turns around.
+// Each inner node with one quad more or fewer than four changes T by one, so |4 - T| of them are needed at least. One ring of quads along the
+// boundary keeps the wishes; the nodes of the ring then are free to take one more or fewer until what is inside is of the three kinds.
 #include "layout/disks/disk_layout.h"
 
 #include <algorithm>
@@ -27,10 +28,10 @@ namespace hybrid_mesh {
 
 namespace {
 
-constexpr int kMostWished = 8;     // quads at a boundary node
-constexpr int kMostTrials = 50;    // fillings of parts of a disk that is cut
-constexpr int kBeam = 64;          // patterns next to the wishes that are followed up
-constexpr int kSmallFront = 8;     // nodes of a front that may leave no choice of irregular nodes at all
+constexpr int kMostWished = 8;   // quads at a boundary node
+constexpr int kMostTrials = 50;  // fillings of parts of a disk that is cut
+constexpr int kBeam = 64;        // patterns next to the wishes that are followed up
+constexpr int kSmallFront = 8;   // nodes of a front that may leave no choice of irregular nodes at all
 
 struct Trial {
   std::optional<DiskFilling> filling;
@@ -128,7 +129,8 @@ class ExactFilling {
           if (budget_ <= 0) return;
           std::array<std::vector<int>, 2> parts;
           for (int k = 0; k <= arc; ++k) parts[0].push_back(k == 0 ? at_i : k == arc ? at_j : quads_at[(i + k) % n]);
-          for (int k = 0; k <= n - arc; ++k) parts[1].push_back(k == 0 ? quads_at[j] - at_j : k == n - arc ? quads_at[i] - at_i : quads_at[(j + k) % n]);
+          for (int k = 0; k <= n - arc; ++k)
+            parts[1].push_back(k == 0 ? quads_at[j] - at_j : k == n - arc ? quads_at[i] - at_i : quads_at[(j + k) % n]);
           int least = 0;
           for (auto& part : parts) {
             if (length == 2) part.push_back(2);
@@ -139,7 +141,8 @@ class ExactFilling {
           if (!first.filling) continue;
           const Trial second = (*this)(parts[1]);
           if (!second.filling) continue;
-          DiskFilling joined{join(n, i, j, arc, length, first.filling->layout, second.filling->layout), first.filling->irregular + second.filling->irregular};
+          DiskFilling joined{join(n, i, j, arc, length, first.filling->layout, second.filling->layout),
+                             first.filling->irregular + second.filling->irregular};
           if (better(joined, trial.filling) && is_disk_mesh(joined.layout, n)) trial.filling = std::move(joined);
         }
     }
@@ -185,8 +188,8 @@ int difference(const std::vector<int>& a, const std::vector<int>& b) {
   return sum;
 }
 
-// Changes wishes one by one until they can be kept: a beam search, in which those come first that went farthest, and those with more quads before those with fewer. A rectangle
-// ends it at the latest.
+// Changes wishes one by one until they can be kept: a beam search, in which those come first that went farthest, and those with more quads before
+// those with fewer. A rectangle ends it at the latest.
 DiskLayout fill_near(const std::vector<int>& wishes, const Progress& progress) {
   struct Candidate {
     std::tuple<int, int, int> rank;  // least first
@@ -231,7 +234,8 @@ DiskLayout fill_near(const std::vector<int>& wishes, const Progress& progress) {
 DiskLayout fill_disk(const std::vector<int>& quads_at, const Progress& progress) {
   const int n = static_cast<int>(quads_at.size());
   if (n % 2) throw Error(ErrorCode::InvalidInput, "a boundary of " + std::to_string(n) + " edges: only an even number can be filled with quads");
-  if (n < 4) throw Error(ErrorCode::InvalidInput, "a boundary of " + std::to_string(n) + " edges: two nodes would be joined twice; at least four are needed");
+  if (n < 4)
+    throw Error(ErrorCode::InvalidInput, "a boundary of " + std::to_string(n) + " edges: two nodes would be joined twice; at least four are needed");
   std::vector<int> wishes;
   for (int q : quads_at) wishes.push_back(std::clamp(q, 1, kMostWished));
   // The least of all rotations, so that the layout turns with the wishes.

@@ -105,8 +105,8 @@ class Interior {
     return true;
   }
 
-  // Chooses nodes such that the front turns by `target`: the fewest, and the larger `smoothness` is, the more at an even pace, as a circle does. `phase` in [0, 1) says where it
-  // begins. False if there is no choice.
+  // Chooses nodes such that the front turns by `target`: the fewest, and the larger `smoothness` is, the more at an even pace, as a circle does.
+  // `phase` in [0, 1) says where it begins. False if there is no choice.
   bool smoothen(int target, double phase, double smoothness, std::vector<int>& more) const {
     const int n = static_cast<int>(nodes_.size()), reach = n / 2 + std::abs(turns_ - target) + 1, width = 2 * reach + 1;
     constexpr double kNever = std::numeric_limits<double>::infinity();

@@ -20,7 +20,8 @@ bool better(const DiskFilling& a, const std::optional<DiskFilling>& b);
 // Whether no two nodes are joined twice, no quad has a node twice, and there is no boundary but the disk's.
 bool is_disk_mesh(const DiskLayout& layout, int boundary_nodes);
 
-// Fills the disk inside a front of inner nodes. Some of them take one quad more or less than four, so that the front turns by 3, 4 or 5 right angles. Nothing if no way is found.
+// Fills the disk inside a front of inner nodes. Some of them take one quad more or less than four, so that the front turns by 3, 4 or 5 right angles.
+// Nothing if no way is found.
 std::optional<DiskFilling> fill_interior(const DiskFront& front, const Progress& progress);
 
 }  // namespace hybrid_mesh

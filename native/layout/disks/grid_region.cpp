@@ -45,7 +45,10 @@ class GridRegion {
       const int now = x > 0 && y >= 0 ? 0 : x <= 0 && y > 0 ? 1 : x < 0 ? 2 : 3;
       if (i == 0) first = quadrant = now;
       quadrant += (((now - quadrant + 1) % 4) + 4) % 4 - 1;
-      const std::array<int, 2> from_centre = now == 0 ? std::array{x, y} : now == 1 ? std::array{y, -x} : now == 2 ? std::array{-x, -y} : std::array{-y, x};
+      const std::array<int, 2> from_centre = now == 0   ? std::array{x, y}
+                                             : now == 1 ? std::array{y, -x}
+                                             : now == 2 ? std::array{-x, -y}
+                                                        : std::array{-y, x};
       places.push_back({((quadrant % quadrants_) + quadrants_) % quadrants_, from_centre[0], from_centre[1]});
       width_ = std::max({width_, from_centre[0] + 2, from_centre[1] + 2});
     }

@@ -39,8 +39,9 @@ struct GridWalk {
   int height(std::size_t i, const std::array<int, 2>& point) const { return step(i)[0] * (point[1] - at[i][1]) - step(i)[1] * (point[0] - at[i][0]); }
 };
 
-// The cells that such a walk encloses: of the plane's grid or, for one that turns by 3 or 5, of the grid on three or five quadrants around a point. Corners counter-clockwise: the
-// nodes of the walk, then the points inside. Nothing if the walk does not go around once, or meets itself or that point.
+// The cells that such a walk encloses: of the plane's grid or, for one that turns by 3 or 5, of the grid on three or five quadrants around a point.
+// Corners counter-clockwise: the nodes of the walk, then the points inside. Nothing if the walk does not go around once, or meets itself or that
+// point.
 std::optional<std::vector<std::array<int, 4>>> cells_inside(const GridWalk& walk);
 
 }  // namespace hybrid_mesh

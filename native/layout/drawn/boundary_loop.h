@@ -19,7 +19,7 @@ class BoundaryLoop {
   double length() const { return at_.back(); }
   double distance(int i, int j) const;  // along the loop, the shorter way
 
-  Vec3 at(double arc) const;               // counted around the loop
+  Vec3 at(double arc) const;                // counted around the loop
   double nearest(const Vec3& place) const;  // the arc length of the point of the loop that is nearest
   // The angle between the ways from a length before point i to it, and from it to a length after it.
   double turn(int i, double window) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Based on: Guskov, Khodakovsky, Schroeder, Sweldens, Hybrid meshes: multiresolution using regular and irregular refinement, 2002 (four points on a boundary and a chain of cubes).
+// Based on: Guskov, Khodakovsky, Schroeder, Sweldens, Hybrid meshes: multiresolution using regular and irregular refinement, 2002 (four points on a
+// boundary and a chain of cubes).
 #include "layout/drawn/boundary_tower.h"
 
 #include <algorithm>
@@ -48,7 +49,8 @@ std::vector<double> arcs_of(const BoundaryLoop& loop, const std::vector<Vec3>& n
     for (std::size_t j = 0; j < i; ++j) {
       const double gap = std::abs(arcs[i] - arcs[j]);
       if (std::min(gap, loop.length() - gap) < kLeastGap * loop.length())
-        throw Error(ErrorCode::InvalidInput, "boundary nodes " + std::to_string(j) + " and " + std::to_string(i) + " lie at one place of the boundary");
+        throw Error(ErrorCode::InvalidInput,
+                    "boundary nodes " + std::to_string(j) + " and " + std::to_string(i) + " lie at one place of the boundary");
     }
   std::sort(arcs.begin(), arcs.end());
   return arcs;
@@ -59,7 +61,8 @@ std::vector<double> arcs_of(const BoundaryLoop& loop, const std::vector<Vec3>& n
 PatchedSurface grow_boundary_tower(const TriangleSurface& surface, const BoundaryTower& tower, const Progress& progress) {
   if (const std::string defect = find_disk_defect(surface); !defect.empty())
     throw Error(ErrorCode::InvalidInput, "a base on four nodes of a boundary takes a surface that is a disk, and this one " + defect);
-  if (!tower.nodes.empty() && tower.nodes.size() != 4) throw Error(ErrorCode::InvalidInput, "a base has four nodes on a boundary, not " + std::to_string(tower.nodes.size()));
+  if (!tower.nodes.empty() && tower.nodes.size() != 4)
+    throw Error(ErrorCode::InvalidInput, "a base has four nodes on a boundary, not " + std::to_string(tower.nodes.size()));
   const BoundaryLoop loop = boundary_loops(surface).front();
   LayoutOutline outline;
   outline.quads = {{0, 1, 2, 3}};

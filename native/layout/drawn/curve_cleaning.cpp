@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "base/tolerances.h"
-#include "layout/drawn/patch_layout.h"
 #include "layout/curves/surface_paths.h"
+#include "layout/drawn/patch_layout.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -14,7 +14,12 @@ namespace {
 class CurveCleaning {
  public:
   CurveCleaning(const TriangleSurface& surface, SurfaceCurves& curves, const CleaningOptions& options)
-      : surface_(surface), curves_(curves), options_(options), is_kept_(curves.points().size(), 0), is_junction_(is_kept_), moved_(is_kept_.size(), 0) {
+      : surface_(surface),
+        curves_(curves),
+        options_(options),
+        is_kept_(curves.points().size(), 0),
+        is_junction_(is_kept_),
+        moved_(is_kept_.size(), 0) {
     for (const int v : options.boundary_nodes) is_kept_[v] = 1;
     for (const int v : options.junctions) is_junction_[v] = 1;
   }
@@ -89,7 +94,8 @@ class CurveCleaning {
   bool is_crossing(int v) const { return curves_.degree(v) == 4 && !is_junction_[v] && !curves_.mesh().is_boundary(v); }
   int other_end(int c, int v) const { return curves_.curve(c).start == v ? curves_.curve(c).end : curves_.curve(c).start; }
 
-  // Small loops with nothing inside go. So do two curves side by side with nothing in between, from a node to where their strokes cross once more: the crossing goes to the node.
+  // Small loops with nothing inside go. So do two curves side by side with nothing in between, from a node to where their strokes cross once more:
+  // the crossing goes to the node.
   bool remove_slips() {
     std::vector<int> number;  // of the layout's curves
     std::vector<char> slips(curves_.curve_count(), 0);

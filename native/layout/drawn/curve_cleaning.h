@@ -14,8 +14,8 @@ struct CleaningOptions {
   std::vector<int> junctions;       // vertices where strokes were meant to meet
 };
 
-// Takes out of drawn curves, made from `surface`, what is too small to be meant: overshoots, short pieces between nodes that are drawn as one, small loops, and slips of strokes that
-// cross on their way to a common node. Two pieces of a stroke that meet alone become one.
+// Takes out of drawn curves, made from `surface`, what is too small to be meant: overshoots, short pieces between nodes that are drawn as one, small
+// loops, and slips of strokes that cross on their way to a common node. Two pieces of a stroke that meet alone become one.
 void clean_curves(const TriangleSurface& surface, SurfaceCurves& curves, const CleaningOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -10,20 +10,20 @@
 
 #include "base/error.h"
 #include "base/tolerances.h"
+#include "layout/curves/curve_tightening.h"
+#include "layout/curves/surface_paths.h"
+#include "layout/curves/vertex_placing.h"
 #include "layout/drawn/boundary_corners.h"
 #include "layout/drawn/curve_cleaning.h"
-#include "layout/curves/curve_tightening.h"
 #include "layout/drawn/point_grid.h"
 #include "layout/drawn/stroke_projection.h"
 #include "layout/drawn/surface_frame.h"
-#include "layout/curves/surface_paths.h"
-#include "layout/curves/vertex_placing.h"
 
 namespace hybrid_mesh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFinest = 0.0025;     // edges near strokes are not split below this length
+constexpr double kFinest = 0.0025;          // edges near strokes are not split below this length
 constexpr std::size_t kMostFaces = 400000;  // made by splitting
 
 // A stroke on the surface, on its way to become curves.
@@ -31,14 +31,14 @@ struct Path {
   int stroke = -1;
   DrawnStroke::Fit fit = DrawnStroke::Fit::Tight;
   std::vector<FacePoint> points;
-  std::vector<double> at;             // arc length
+  std::vector<double> at;  // arc length
   std::array<bool, 2> at_boundary{};
   std::array<int, 2> junction{-1, -1};
   struct Stop {
     double at;
     int junction;
   };
-  std::vector<Stop> stops;            // junctions that it passes through
+  std::vector<Stop> stops;  // junctions that it passes through
   bool dropped = false;
 
   double length() const { return at.back(); }
@@ -55,8 +55,15 @@ struct Junction {
 class LayoutMaker {
  public:
   LayoutMaker(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options, const Progress& progress)
-      : surface_(surface), strokes_(strokes), options_(options), progress_(progress), frame_(surface.points), snap_(options.snap), unit_(frame_.to_unit(surface)),
-        curves_(unit_, unit_.points), paths_on_(curves_.mesh(), curves_.points()) {}
+      : surface_(surface),
+        strokes_(strokes),
+        options_(options),
+        progress_(progress),
+        frame_(surface.points),
+        snap_(options.snap),
+        unit_(frame_.to_unit(surface)),
+        curves_(unit_, unit_.points),
+        paths_on_(curves_.mesh(), curves_.points()) {}
 
   DrawnLayout run() {
     project();
@@ -80,7 +87,9 @@ class LayoutMaker {
  private:
   using Kind = LayoutProblem::Kind;
 
-  void report(Kind kind, const char* message, std::vector<Vec3> where, int stroke) { problems_.push_back({kind, message, std::move(where), stroke, -1}); }
+  void report(Kind kind, const char* message, std::vector<Vec3> where, int stroke) {
+    problems_.push_back({kind, message, std::move(where), stroke, -1});
+  }
 
   std::vector<Vec3> line_of(const Path& path, double from = -kInfinity, double to = kInfinity) const {
     std::vector<Vec3> line;
@@ -189,7 +198,8 @@ class LayoutMaker {
         std::size_t j = i;
         while (j < beside.size() && beside[j]) ++j;
         if (j > i && path.at[j - 1] - path.at[i] > run) {
-          report(Kind::Overlap, "a stroke runs along another one or along itself, and is left out", line_of(path, path.at[i], path.at[j - 1]), path.stroke);
+          report(Kind::Overlap, "a stroke runs along another one or along itself, and is left out", line_of(path, path.at[i], path.at[j - 1]),
+                 path.stroke);
           path.dropped = true;
           break;
         }
@@ -213,7 +223,8 @@ class LayoutMaker {
     std::vector<int> nodes = options_.boundary_nodes;
     std::vector<int> sorted = nodes;
     std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) throw Error(ErrorCode::InvalidInput, "a node of the boundary is given twice");
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+      throw Error(ErrorCode::InvalidInput, "a node of the boundary is given twice");
     for (const int v : nodes)
       if (v < 0 || v >= static_cast<int>(surface_.points.size()) || !mesh.is_boundary(v))
         throw Error(ErrorCode::InvalidInput, "a node is given at the point " + std::to_string(v) + ", which is not on the surface's boundary");
@@ -231,7 +242,9 @@ class LayoutMaker {
 
   const FacePoint& end_of(int path, int end) const { return end == 0 ? paths_[path].points.front() : paths_[path].points.back(); }
 
-  bool near_on_surface(const FacePoint& a, const FacePoint& b) { return (a.at - b.at).norm() < tolerance::same_place || paths_on_.join(a, b, 3 * snap_ + 2 * edge_length()).has_value(); }
+  bool near_on_surface(const FacePoint& a, const FacePoint& b) {
+    return (a.at - b.at).norm() < tolerance::same_place || paths_on_.join(a, b, 3 * snap_ + 2 * edge_length()).has_value();
+  }
 
   // Ends that are near each other, or near a node of the boundary, become one junction: the closest first, as long as it stays small.
   void join_ends() {
@@ -345,7 +358,8 @@ class LayoutMaker {
         paths_[other].stops.push_back({at, number});
       }
     }
-    for (Path& path : paths_) std::stable_sort(path.stops.begin(), path.stops.end(), [](const Path::Stop& a, const Path::Stop& b) { return a.at < b.at; });
+    for (Path& path : paths_)
+      std::stable_sort(path.stops.begin(), path.stops.end(), [](const Path::Stop& a, const Path::Stop& b) { return a.at < b.at; });
   }
 
   // Every junction becomes a vertex.
@@ -367,7 +381,8 @@ class LayoutMaker {
       Path& path = paths_[k];
       const Vec3 &start = curves_.points()[junctions_[path.junction[0]].vertex], &end = curves_.points()[junctions_[path.junction[1]].vertex];
       // The way to the end's vertex begins before it.
-      const double before = std::max(0.5 * snap_, 1.2 * (path.points.front().at - start).norm()), after = std::max(0.5 * snap_, 1.2 * (path.points.back().at - end).norm());
+      const double before = std::max(0.5 * snap_, 1.2 * (path.points.front().at - start).norm()),
+                   after = std::max(0.5 * snap_, 1.2 * (path.points.back().at - end).norm());
       std::size_t first = 0, last = path.points.size();
       while (first < last && (path.points[first].at - start).norm() < before && path.at[first] < 3 * snap_) ++first;
       while (last > first && (path.points[last - 1].at - end).norm() < after && path.at[last - 1] > path.length() - 3 * snap_) --last;
@@ -465,7 +480,7 @@ class LayoutMaker {
   SurfaceCurves curves_;
   SurfacePaths paths_on_;
   std::vector<Path> paths_;
-  std::vector<Junction> junctions_;   // first those of the boundary
+  std::vector<Junction> junctions_;  // first those of the boundary
   int given_count_ = 0;
   bool given_nodes_ = false;
   std::optional<VertexPlacing> placing_;
@@ -474,7 +489,8 @@ class LayoutMaker {
 
 }  // namespace
 
-DrawnLayout make_layout(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options, const Progress& progress) {
+DrawnLayout make_layout(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options,
+                        const Progress& progress) {
   if (!(options.snap >= 0 && options.snap <= 0.5)) throw Error(ErrorCode::InvalidInput, "snap must be from 0 to 0.5");
   if (!(options.reach >= 0 && std::isfinite(options.reach))) throw Error(ErrorCode::InvalidInput, "reach must be at least 0");
   if (!(options.corner_angle > 0)) throw Error(ErrorCode::InvalidInput, "corner_angle must be greater than 0");

@@ -14,10 +14,10 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
-constexpr double kUndecided = 0.3;  // quads: an angle so far from a whole number of right angles may be rounded up or down
-constexpr int kMostTrials = 24;     // of other roundings in a face
+constexpr double kUndecided = 0.3;            // quads: an angle so far from a whole number of right angles may be rounded up or down
+constexpr int kMostTrials = 24;               // of other roundings in a face
 constexpr int kIrregular = 2, kUnsound = 20;  // in quads: what a node that is not regular costs, and one with a quad too few or too many
-constexpr int kMostRounds = 6;  // in which nodes with too few or too many quads are put right
+constexpr int kMostRounds = 6;                // in which nodes with too few or too many quads are put right
 
 // A face that is to be filled, and its corners.
 struct Polygon {
@@ -39,7 +39,8 @@ struct Polygon {
 
 class FaceFiller {
  public:
-  FaceFiller(const PatchLayout& layout, const FaceFillingOptions& options, const Progress& progress) : layout_(layout), progress_(progress), joined_(options.joined) {
+  FaceFiller(const PatchLayout& layout, const FaceFillingOptions& options, const Progress& progress)
+      : layout_(layout), progress_(progress), joined_(options.joined) {
     const int nodes = static_cast<int>(layout.nodes.size());
     least_.assign(nodes, 3);
     most_.assign(nodes, 6);
@@ -107,7 +108,7 @@ class FaceFiller {
   struct Corner {
     Polygon* polygon;
     int k;
-    int quads;  // wished or there
+    int quads;                                                 // wished or there
     double room() const { return polygon->angle[k] / quads; }  // of each of the quads
   };
   std::vector<std::vector<Corner>> corners(bool filled) {
@@ -171,7 +172,8 @@ class FaceFiller {
     joined_.insert(across.begin(), across.end());
   }
 
-  // What a filling is worth avoiding: quads, irregular nodes inside and at its corners, where others have so many quads, and nodes with too few or too many quads.
+  // What a filling is worth avoiding: quads, irregular nodes inside and at its corners, where others have so many quads, and nodes with too few or
+  // too many quads.
   int cost(const Polygon& p, const std::vector<int>& of_others) const {
     std::vector<int> around(p.size() + p.filling.inner_nodes, 0);
     for (const auto& quad : p.filling.quads)
@@ -363,7 +365,9 @@ PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options,
     } catch (const Error& e) {
       if (e.code() != ErrorCode::Internal) throw;
       LayoutProblem problem{LayoutProblem::Kind::ManySides,
-                            "a face of " + std::to_string(layout.faces[f].side_count()) + " sides cannot be filled with quads (" + e.what() + "): curves across it must divide it", {}};
+                            "a face of " + std::to_string(layout.faces[f].side_count()) + " sides cannot be filled with quads (" + e.what() +
+                                "): curves across it must divide it",
+                            {}};
       problem.face = f;
       for (const PatchLayout::Side& s : layout.faces[f].cycles.front())
         for (const int v : layout.points(s)) problem.where.push_back(layout.mesh.points[v]);

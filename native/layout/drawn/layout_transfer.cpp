@@ -13,9 +13,9 @@
 #include "base/error.h"
 #include "layout/curves/curve_search.h"
 #include "layout/curves/curve_tightening.h"
+#include "layout/curves/vertex_placing.h"
 #include "layout/drawn/quad_complex.h"
 #include "layout/drawn/surface_frame.h"
-#include "layout/curves/vertex_placing.h"
 #include "surface/closest_point.h"
 
 namespace hybrid_mesh {
@@ -23,14 +23,20 @@ namespace {
 
 constexpr int kMostReplacements = 30;  // of one curve
 constexpr int kGuidePoints = 24;
-constexpr double kTellingNormal = 0.8; // length of the sum of unit sides' cross products at a node
-constexpr double kNear = 0.1;          // in diagonals
-constexpr double kFarOff = 1e6;        // in diagonals
+constexpr double kTellingNormal = 0.8;  // length of the sum of unit sides' cross products at a node
+constexpr double kNear = 0.1;           // in diagonals
+constexpr double kFarOff = 1e6;         // in diagonals
 
 class LayoutTracer {
  public:
   LayoutTracer(const TriangleSurface& surface, const LayoutOutline& outline, const Progress& progress)
-      : surface_(surface), outline_(outline), progress_(progress), complex_(outline), frame_(surface.points), unit_(frame_.to_unit(surface)), curves_(unit_, unit_.points) {}
+      : surface_(surface),
+        outline_(outline),
+        progress_(progress),
+        complex_(outline),
+        frame_(surface.points),
+        unit_(frame_.to_unit(surface)),
+        curves_(unit_, unit_.points) {}
 
   TransferredLayout run() {
     if (!has_topology() || !place_nodes()) return {{}, failure_};
@@ -61,7 +67,9 @@ class LayoutTracer {
     if (a == b) return true;
     if (a.size() != b.size()) return fail("the surface has " + std::to_string(a.size()) + " components, the quads have " + std::to_string(b.size()));
     const std::size_t k = std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin();
-    const auto describe = [](const std::array<int, 2>& t) { return "Euler number " + std::to_string(t[0]) + " and " + std::to_string(t[1]) + " boundary loops"; };
+    const auto describe = [](const std::array<int, 2>& t) {
+      return "Euler number " + std::to_string(t[0]) + " and " + std::to_string(t[1]) + " boundary loops";
+    };
     return fail("the surface has a component of " + describe(a[k]) + ", the quads one of " + describe(b[k]));
   }
 
@@ -198,7 +206,8 @@ class LayoutTracer {
       do v = mesh.to(mesh.out[v]);
       while (node_of[v] < 0);
       if (node_of[v] != complex_.next_on_boundary(n))
-        return fail("on the boundary, node " + std::to_string(node_of[v]) + " follows node " + std::to_string(n) + " instead of node " + std::to_string(complex_.next_on_boundary(n)));
+        return fail("on the boundary, node " + std::to_string(node_of[v]) + " follows node " + std::to_string(n) + " instead of node " +
+                    std::to_string(complex_.next_on_boundary(n)));
     }
     return true;
   }
@@ -211,8 +220,8 @@ class LayoutTracer {
     const int v = vertex_[node], own = place(end), count = static_cast<int>(order.size());
     // All directions counter-clockwise: placed ends, the corners between them, and free edges.
     struct Direction {
-      int placed = -1;             // place of an end in the order
-      int spoke = -1, rank = -1;   // rank -1: the edge itself
+      int placed = -1;            // place of an end in the order
+      int spoke = -1, rank = -1;  // rank -1: the edge itself
     };
     std::vector<Direction> directions;
     const std::vector<SurfaceCurves::End> ends = curves_.ends_at(v);
@@ -271,7 +280,8 @@ class LayoutTracer {
 
   std::optional<CurveWay> find(int k, CurveSearch::Barriers barriers, bool guided) {
     const QuadComplex::Edge& e = complex_.edge(k);
-    return search_(vertex_[e.from], vertex_[e.to], sector(e.from, {k, true}), sector(e.to, {k, false}), guided ? guide_of(k) : std::vector<Vec3>(), barriers);
+    return search_(vertex_[e.from], vertex_[e.to], sector(e.from, {k, true}), sector(e.to, {k, false}), guided ? guide_of(k) : std::vector<Vec3>(),
+                   barriers);
   }
 
   // Curves that are edges opposite to the ends of edge k.
@@ -294,9 +304,12 @@ class LayoutTracer {
     std::vector<int> order(count), replaced(count, 0);
     for (int k = 0; k < count; ++k) {
       order[k] = k;
-      if (complex_.edge(k).from == complex_.edge(k).to) return fail(name(complex_.edge(k)) + " is closed: there is no telling which way around the surface it goes");
+      if (complex_.edge(k).from == complex_.edge(k).to)
+        return fail(name(complex_.edge(k)) + " is closed: there is no telling which way around the surface it goes");
     }
-    const auto distance = [&](int k) { return (curves_.points()[vertex_[complex_.edge(k).from]] - curves_.points()[vertex_[complex_.edge(k).to]]).norm(); };
+    const auto distance = [&](int k) {
+      return (curves_.points()[vertex_[complex_.edge(k).from]] - curves_.points()[vertex_[complex_.edge(k).to]]).norm();
+    };
     std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return distance(i) < distance(j); });
     std::deque<int> pending(order.begin(), order.end());
     while (!pending.empty()) {
@@ -309,7 +322,8 @@ class LayoutTracer {
           const int other = curves_.curve(c).stroke;
           curves_.remove(c);
           pending.push_back(other);
-          return ++replaced[other] <= kMostReplacements || fail("there is no way for " + name(complex_.edge(k)) + " that leaves one for " + name(complex_.edge(other)));
+          return ++replaced[other] <= kMostReplacements ||
+                 fail("there is no way for " + name(complex_.edge(k)) + " that leaves one for " + name(complex_.edge(other)));
         };
         // Where curves end side by side, those that bar the way come to light one after another.
         for (int tries = 0; !way && tries < kMostReplacements; ++tries) {
@@ -356,7 +370,8 @@ class LayoutTracer {
       for (const PatchLayout::Side& s : layout.faces[f].cycles[0]) of_side[2 * s.curve + s.forward] = f;
     }
     std::vector<int> curve(complex_.edges(), -1), from_node(outline_.nodes.size(), -1);
-    for (int c = 0; c < static_cast<int>(layout.curves.size()); ++c) (layout.curves[c].boundary ? from_node[layout.curves[c].from] : curve[layout.curves[c].stroke]) = c;
+    for (int c = 0; c < static_cast<int>(layout.curves.size()); ++c)
+      (layout.curves[c].boundary ? from_node[layout.curves[c].from] : curve[layout.curves[c].stroke]) = c;
     std::vector<PatchLayout::Face> faces;
     std::vector<int> renumbered(layout.faces.size(), -1);
     for (int q = 0; q < complex_.quads(); ++q) {
@@ -365,7 +380,8 @@ class LayoutTracer {
       if (f < 0 || renumbered[f] >= 0) return false;
       PatchLayout::Face face = layout.faces[f];
       std::vector<PatchLayout::Side>& cycle = face.cycles[0];
-      std::rotate(cycle.begin(), std::find_if(cycle.begin(), cycle.end(), [&](const PatchLayout::Side& s) { return is_side(layout, s, q, 0); }), cycle.end());
+      std::rotate(cycle.begin(), std::find_if(cycle.begin(), cycle.end(), [&](const PatchLayout::Side& s) { return is_side(layout, s, q, 0); }),
+                  cycle.end());
       for (int i = 0; i < 4; ++i)
         if (!is_side(layout, cycle[i], q, i)) return false;
       renumbered[f] = q;

@@ -17,8 +17,10 @@ class CurveHalfEdges {
     std::sort(sorted_.begin(), sorted_.end(), [&](int g, int h) { return ends(g) < ends(h); });
   }
   int operator()(int from, int to) const {
-    const auto at = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair(from, to), [&](int h, const std::pair<int, int>& e) { return ends(h) < e; });
-    if (at == sorted_.end() || ends(*at) != std::pair(from, to)) throw Error(ErrorCode::Internal, "a curve of a layout is not made of the mesh's edges");
+    const auto at =
+        std::lower_bound(sorted_.begin(), sorted_.end(), std::pair(from, to), [&](int h, const std::pair<int, int>& e) { return ends(h) < e; });
+    if (at == sorted_.end() || ends(*at) != std::pair(from, to))
+      throw Error(ErrorCode::Internal, "a curve of a layout is not made of the mesh's edges");
     return *at;
   }
 
@@ -210,18 +212,30 @@ bool PatchLayout::is_quads() const {
 
 const char* name_of(LayoutProblem::Kind kind) {
   switch (kind) {
-    case LayoutProblem::Kind::Unusable: return "unusable";
-    case LayoutProblem::Kind::OffSurface: return "off_surface";
-    case LayoutProblem::Kind::Disconnected: return "disconnected";
-    case LayoutProblem::Kind::Overlap: return "overlap";
-    case LayoutProblem::Kind::BetweenNodes: return "between_nodes";
-    case LayoutProblem::Kind::Dangling: return "dangling";
-    case LayoutProblem::Kind::Uncovered: return "uncovered";
-    case LayoutProblem::Kind::NotADisk: return "not_a_disk";
-    case LayoutProblem::Kind::TooFewSides: return "too_few_sides";
-    case LayoutProblem::Kind::OddSides: return "odd_sides";
-    case LayoutProblem::Kind::ManySides: return "many_sides";
-    case LayoutProblem::Kind::TouchesItself: return "touches_itself";
+    case LayoutProblem::Kind::Unusable:
+      return "unusable";
+    case LayoutProblem::Kind::OffSurface:
+      return "off_surface";
+    case LayoutProblem::Kind::Disconnected:
+      return "disconnected";
+    case LayoutProblem::Kind::Overlap:
+      return "overlap";
+    case LayoutProblem::Kind::BetweenNodes:
+      return "between_nodes";
+    case LayoutProblem::Kind::Dangling:
+      return "dangling";
+    case LayoutProblem::Kind::Uncovered:
+      return "uncovered";
+    case LayoutProblem::Kind::NotADisk:
+      return "not_a_disk";
+    case LayoutProblem::Kind::TooFewSides:
+      return "too_few_sides";
+    case LayoutProblem::Kind::OddSides:
+      return "odd_sides";
+    case LayoutProblem::Kind::ManySides:
+      return "many_sides";
+    case LayoutProblem::Kind::TouchesItself:
+      return "touches_itself";
   }
   return "";
 }
@@ -257,7 +271,8 @@ std::vector<LayoutProblem> find_problems(const PatchLayout& layout) {
       }
     const int rims = static_cast<int>(face.cycles.size()), sides = face.side_count();
     if (rims == 0) {
-      problems.push_back({Kind::Uncovered, "a component of the surface has no curves", {layout.mesh.points[layout.mesh.faces[triangle[f]][0]]}, -1, f});
+      problems.push_back(
+          {Kind::Uncovered, "a component of the surface has no curves", {layout.mesh.points[layout.mesh.faces[triangle[f]][0]]}, -1, f});
     } else if (!face.is_disk()) {
       const int handles = (2 - rims - face.euler) / 2;
       std::string message = rims == 2 && handles == 0 ? "a face is a ring" : "a face is no disk";

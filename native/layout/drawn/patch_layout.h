@@ -9,7 +9,8 @@
 
 namespace hybrid_mesh {
 
-// Curves on a surface, the nodes where they meet, and the faces that they cut it into. The surface is split along the curves, so that each of their segments lies in one of its faces.
+// Curves on a surface, the nodes where they meet, and the faces that they cut it into. The surface is split along the curves, so that each of their
+// segments lies in one of its faces.
 struct PatchLayout {
   struct Curve {
     int from = -1, to = -1;   // nodes
@@ -62,19 +63,19 @@ struct LayoutProblem {
   std::string message;
   std::vector<Vec3> where;  // what to mark: a point, or a line along the surface
   int stroke = -1;
-  int face = -1;            // of the layout
+  int face = -1;  // of the layout
 };
 const char* name_of(LayoutProblem::Kind kind);
 
-// The layout that curves on a surface make: `curves` was made from `surface`. `nodes`: vertices that are nodes whether or not a curve ends there; they are numbered first.
-// A boundary without nodes gets one. The first curves are those of `curves` that are alive, in their order.
+// The layout that curves on a surface make: `curves` was made from `surface`. `nodes`: vertices that are nodes whether or not a curve ends there;
+// they are numbered first. A boundary without nodes gets one. The first curves are those of `curves` that are alive, in their order.
 PatchLayout make_patch_layout(const TriangleSurface& surface, const SurfaceCurves& curves, const std::vector<int>& nodes);
 
 // Problems that can be seen from the layout itself: Dangling to TouchesItself. One that follows from another at the same face is left out.
 std::vector<LayoutProblem> find_problems(const PatchLayout& layout);
 
-// A layout of quads as the maps use it: the patches are the layout's faces, the nodes its nodes. Throws Error{InvalidInput} if a face is no disk with four sides. map_patches() takes
-// the result if the layout has no problems.
+// A layout of quads as the maps use it: the patches are the layout's faces, the nodes its nodes. Throws Error{InvalidInput} if a face is no disk with
+// four sides. map_patches() takes the result if the layout has no problems.
 PatchedSurface to_patched_surface(const PatchLayout& layout);
 
 // A face cut out: points where it touches itself are doubled.

@@ -44,7 +44,8 @@ class PointGrid {
  private:
   using Key = std::array<std::int64_t, 3>;
   Key key(const Vec3& p) const {
-    return {static_cast<std::int64_t>(std::floor(p.x() / cell_)), static_cast<std::int64_t>(std::floor(p.y() / cell_)), static_cast<std::int64_t>(std::floor(p.z() / cell_))};
+    return {static_cast<std::int64_t>(std::floor(p.x() / cell_)), static_cast<std::int64_t>(std::floor(p.y() / cell_)),
+            static_cast<std::int64_t>(std::floor(p.z() / cell_))};
   }
 
   double cell_;

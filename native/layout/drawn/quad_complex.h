@@ -39,8 +39,8 @@ class QuadComplex {
   const Edge& edge(int e) const { return edges_[e]; }
   int edge_at(int q, int i) const { return edge_at_[q][i]; }  // of a side, -1: the boundary
   bool is_left(int q, int i) const { return edges_[edge_at_[q][i]].left.patch == q && edges_[edge_at_[q][i]].left.side == i; }
-  const std::vector<EdgeEnd>& around(int node) const { return around_[node]; }       // counter-clockwise; on the boundary from the clockwise-most on
-  int next_on_boundary(int node) const { return next_on_boundary_[node]; }           // the node that the boundary leads to, -1 inside
+  const std::vector<EdgeEnd>& around(int node) const { return around_[node]; }  // counter-clockwise; on the boundary from the clockwise-most on
+  int next_on_boundary(int node) const { return next_on_boundary_[node]; }      // the node that the boundary leads to, -1 inside
   MeshComponents components() const;
 
  private:

@@ -11,8 +11,8 @@
 namespace hybrid_mesh {
 namespace {
 
-constexpr int kMostSamples = 50000;  // a stroke
-constexpr double kDensest = 0.2;     // of a step
+constexpr int kMostSamples = 50000;       // a stroke
+constexpr double kDensest = 0.2;          // of a step
 constexpr std::size_t kMostPieces = 100;  // of a stroke that leaves the surface and comes back: each would be a curve of its own
 
 bool is_finite(const Vec3& p) { return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z()); }
@@ -25,7 +25,8 @@ double length(const std::vector<Vec3>& line) {
 
 }  // namespace
 
-StrokeProjection::StrokeProjection(const TriangleSurface& surface, const Options& options) : surface_(surface), options_(options), query_(surface), boundary_point_(surface.points.size(), 0) {
+StrokeProjection::StrokeProjection(const TriangleSurface& surface, const Options& options)
+    : surface_(surface), options_(options), query_(surface), boundary_point_(surface.points.size(), 0) {
   for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h)
     if (surface.opposite[h] < 0) boundary_point_[surface.from(h)] = 1;
 }
@@ -87,9 +88,11 @@ std::vector<StrokeProjection::Sample> StrokeProjection::samples(const std::vecto
   const auto add = [&](const Vec3& p) {
     Sample s = sample(p, out.empty() ? -1 : out.back().face);
     if (!out.empty()) {
-      // Closest points jump where a stroke is as near to another part of the surface. The part where it is now keeps it, unless that is clearly farther.
+      // Closest points jump where a stroke is as near to another part of the surface. The part where it is now keeps it, unless that is clearly
+      // farther.
       const Sample& before = out.back();
-      const bool jumps = (s.on_surface - before.on_surface).norm() > 3 * (p - before.drawn).norm() + tolerance::same_place || normal(s.face).dot(normal(before.face)) < 0;
+      const bool jumps = (s.on_surface - before.on_surface).norm() > 3 * (p - before.drawn).norm() + tolerance::same_place ||
+                         normal(s.face).dot(normal(before.face)) < 0;
       if (jumps) {
         const Sample near = nearby(p, before);
         if (near.distance <= 1.5 * s.distance + 0.5 * step) s = near;
@@ -103,7 +106,8 @@ std::vector<StrokeProjection::Sample> StrokeProjection::samples(const std::vecto
     const int pieces = static_cast<int>(std::ceil((b - a).norm() / step));
     // Where the line between two drawn points is far from the surface, it tells nothing: the way between them is found on the surface.
     bool near = true;
-    for (int k = 1; k < pieces && near; ++k) near = std::sqrt(query_.closest(a + (static_cast<double>(k) / pieces) * (b - a), out.back().face).squared_distance) <= options_.reach;
+    for (int k = 1; k < pieces && near; ++k)
+      near = std::sqrt(query_.closest(a + (static_cast<double>(k) / pieces) * (b - a), out.back().face).squared_distance) <= options_.reach;
     for (int k = 1; k < pieces && near; ++k) add(a + (static_cast<double>(k) / pieces) * (b - a));
     add(b);
   }

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "layout/drawn/patch_layout.h"
 #include "layout/curves/surface_paths.h"
+#include "layout/drawn/patch_layout.h"
 #include "surface/closest_point.h"
 
 namespace hybrid_mesh {

@@ -20,7 +20,8 @@
 namespace hybrid_mesh {
 namespace {
 
-// How far, as a fraction of a face, a node keeps off the face's sides. Where nodes lie close to one another in a large face it must be little, or their quads fold.
+// How far, as a fraction of a face, a node keeps off the face's sides. Where nodes lie close to one another in a large face it must be little, or
+// their quads fold.
 constexpr std::array<double, 3> kRoom{0.02, 1e-3, 1e-5};
 
 class QuadDrawing {
@@ -68,7 +69,8 @@ class QuadDrawing {
       connect_half_edges(disk());
     }
     std::vector<std::array<Vec2, 3>> corners(disk().faces.size());
-    if (!convex_map(faces, sides, polygon_, corners)) throw Error(ErrorCode::Internal, "the map of a disk to a polygon degenerates in double precision");
+    if (!convex_map(faces, sides, polygon_, corners))
+      throw Error(ErrorCode::Internal, "the map of a disk to a polygon degenerates in double precision");
     uv_.resize(disk().points.size());
     for (const int f : faces)
       for (int i = 0; i < 3; ++i) uv_[disk().faces[f][i]] = corners[f][i];
@@ -93,7 +95,8 @@ class QuadDrawing {
     // The tip itself may be next to the rim in the plane: the rings keep some room.
     centre = 0.9 * uv_[tip];
     const double side = loop_length(disk(), rim_) / static_cast<double>(polygon_.size());
-    // The last one as far from the tip as a square's sides are from its middle, or at the height that leaves as much above it as is between two, less a little.
+    // The last one as far from the tip as a square's sides are from its middle, or at the height that leaves as much above it as is between two, less
+    // a little.
     const double rings = edit_.rings;
     const double last = std::max((rings - 0.1) / (rings + 1) * depth[tip], depth[tip] - 0.6 * side);
     std::vector<double> gauges;
@@ -176,10 +179,13 @@ class QuadDrawing {
     std::array<double, 3> weights{1, 0, 0};
     for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
       const std::array<int, 3>& c = mesh.faces[f];
-      const auto area = [&](const Vec2& x, const Vec2& y, const Vec2& z) { return (y.x() - x.x()) * (z.y() - x.y()) - (y.y() - x.y()) * (z.x() - x.x()); };
+      const auto area = [&](const Vec2& x, const Vec2& y, const Vec2& z) {
+        return (y.x() - x.x()) * (z.y() - x.y()) - (y.y() - x.y()) * (z.x() - x.x());
+      };
       const double whole = area(uv_[c[0]], uv_[c[1]], uv_[c[2]]);
       if (!(whole > 0)) continue;
-      const std::array<double, 3> w{area(uv_[c[1]], uv_[c[2]], p) / whole, area(uv_[c[2]], uv_[c[0]], p) / whole, area(uv_[c[0]], uv_[c[1]], p) / whole};
+      const std::array<double, 3> w{area(uv_[c[1]], uv_[c[2]], p) / whole, area(uv_[c[2]], uv_[c[0]], p) / whole,
+                                    area(uv_[c[0]], uv_[c[1]], p) / whole};
       const double least = std::min({w[0], w[1], w[2]});
       if (least > best) best = least, face = f, weights = w;
     }
@@ -230,7 +236,9 @@ class QuadDrawing {
 
 }  // namespace
 
-PatchedSurface draw_quads(PatchedSurface& disk, const std::vector<std::vector<int>>& sides, const LayoutEdit& edit) { return QuadDrawing(disk, sides, edit).run(); }
+PatchedSurface draw_quads(PatchedSurface& disk, const std::vector<std::vector<int>>& sides, const LayoutEdit& edit) {
+  return QuadDrawing(disk, sides, edit).run();
+}
 
 PointSource traced(const PointSource& point, const std::vector<PointSource>& sources) {
   std::array<const PointSource*, 3> of{nullptr, nullptr, nullptr};

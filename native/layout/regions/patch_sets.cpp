@@ -107,7 +107,8 @@ void part_at_nodes(const PatchedSurface& s, PatchSet& in) {
     for (int n = 0; n < s.node_count; ++n) {
       std::vector<std::vector<int>> fans;
       for (const int q : around[n]) {
-        if (!in[q] || std::any_of(fans.begin(), fans.end(), [&](const auto& fan) { return std::find(fan.begin(), fan.end(), q) != fan.end(); })) continue;
+        if (!in[q] || std::any_of(fans.begin(), fans.end(), [&](const auto& fan) { return std::find(fan.begin(), fan.end(), q) != fan.end(); }))
+          continue;
         std::vector<int> fan{q};
         for (std::size_t i = 0; i < fan.size(); ++i)
           for (int k = 0; k < 4; ++k) {

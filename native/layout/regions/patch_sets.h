@@ -12,7 +12,8 @@ using PatchSet = std::vector<char>;  // per patch of a surface whether it is in 
 // Patches that share a node with one of the given, and the given.
 PatchSet dilated(const PatchedSurface& surface, const PatchSet& in);
 
-// Takes out of a set the paths, those of least energy, that join the surface's boundary loops to what is not in the set: with a loop inside it would be no disk. `energy`: of each patch.
+// Takes out of a set the paths, those of least energy, that join the surface's boundary loops to what is not in the set: with a loop inside it would
+// be no disk. `energy`: of each patch.
 void open_to_loops(const PatchedSurface& surface, PatchSet& in, const std::vector<double>& energy);
 
 // Takes out patches where the set merely touches itself at a node, the fewer ones there.

@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "layout/base/curve_network.h"
 #include "layout/base/decimation.h"
-#include "layout/regions/disk_drawing.h"
 #include "layout/base/quad_layout.h"
+#include "layout/regions/disk_drawing.h"
 #include "layout/regions/region_pattern.h"
 
 namespace hybrid_mesh {
@@ -123,7 +123,9 @@ LayoutEdit tower_edit(const PatchedSurface& surface, const PatchRegion& region, 
   edit.inner_nodes = n * rings + static_cast<int>(region.inner_nodes.size());
   for (int r = 0; r < rings; ++r)
     for (int k = 0; k < n; ++k) edit.quads.push_back({n * r + k, n * r + (k + 1) % n, n * (r + 1) + (k + 1) % n, n * (r + 1) + k});
-  const auto place = [](const std::vector<int>& nodes, int node) { return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin()); };
+  const auto place = [](const std::vector<int>& nodes, int node) {
+    return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
   for (const int q : region.patches) {
     std::array<int, 4> quad;
     for (int i = 0; i < 4; ++i) {
@@ -135,7 +137,8 @@ LayoutEdit tower_edit(const PatchedSurface& surface, const PatchRegion& region, 
   return edit;
 }
 
-std::optional<int> irregular_growth(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence, const std::vector<char>& on_boundary) {
+std::optional<int> irregular_growth(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const std::vector<int>& valence,
+                                    const std::vector<char>& on_boundary) {
   const int n = static_cast<int>(region.corners.size());
   std::vector<int> change(n, 0), fresh(edit.inner_nodes, 0);
   for (const auto& quad : edit.quads)
@@ -344,7 +347,8 @@ LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit drawn) { return Relayou
 
 namespace {
 
-std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, double slack, std::uint64_t seed, const Progress& progress) {
+std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, double slack, std::uint64_t seed,
+                                        const Progress& progress) {
   const PatchedPart part = part_of(surface, region.patches);
   const TriangleSurface& disk = part.surface.mesh;
   const int n = static_cast<int>(region.corners.size());
@@ -402,7 +406,8 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
 
 }  // namespace
 
-std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed, const Progress& progress) {
+std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed,
+                                   const Progress& progress) {
   // Whether the triangles beside a boundary that must stay find pairs is a matter of luck, and more of them have more of it.
   for (const double slack : {2.6, 3.1, 3.6, 4.1})
     for (const std::uint64_t other : {0, 1})

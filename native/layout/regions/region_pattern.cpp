@@ -154,7 +154,8 @@ std::string find_edit_defect(const PatchedSurface& surface, const PatchRegion& r
   for (const auto& quad : edit.quads)
     for (int i = 0; i < 4; ++i)
       if (joined.count({quad[i], quad[(i + 1) % 4]}))
-        return "corners " + std::to_string(quad[i]) + " and " + std::to_string(quad[(i + 1) % 4]) + " would be joined inside the region, and are outside it already";
+        return "corners " + std::to_string(quad[i]) + " and " + std::to_string(quad[(i + 1) % 4]) +
+               " would be joined inside the region, and are outside it already";
   const int n = static_cast<int>(region.corners.size());
   const std::vector<int> valence = node_valences(surface), inside = quads_inside(surface, region);
   const std::vector<char> on_boundary = boundary_nodes(surface);
@@ -166,8 +167,8 @@ std::string find_edit_defect(const PatchedSurface& surface, const PatchRegion& r
     const int before = fresh ? 0 : valence[region.corners[k]], after = fresh ? around[k] : before - inside[k] + around[k];
     const int least = rim ? 1 : 3, most = rim ? 4 : 6;
     if (after == before || (after >= least && after <= most)) continue;
-    return std::string(fresh ? "new node " : "corner ") + std::to_string(k) + " would have " + std::to_string(after) + " quads; from " + std::to_string(least) + " to " +
-           std::to_string(most) + " are possible there";
+    return std::string(fresh ? "new node " : "corner ") + std::to_string(k) + " would have " + std::to_string(after) + " quads; from " +
+           std::to_string(least) + " to " + std::to_string(most) + " are possible there";
   }
   return "";
 }

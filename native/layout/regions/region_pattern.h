@@ -15,11 +15,12 @@ namespace hybrid_mesh {
 // How many quads of the region each of its corners must have to be regular, its quads outside being what they are; at least 1.
 std::vector<int> regular_quads(const PatchedSurface& surface, const PatchRegion& region);
 
-// Pairs of corners, each in both orders, that a side outside the region joins: joined inside it as well, they would be joined twice. The region's own sides are left out.
+// Pairs of corners, each in both orders, that a side outside the region joins: joined inside it as well, they would be joined twice. The region's own
+// sides are left out.
 std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, const PatchRegion& region);
 
-// Quads that fill the region, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where they cannot. Throws Error{InvalidInput} for an
-// odd number of boundary sides.
+// Quads that fill the region, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where they cannot.
+// Throws Error{InvalidInput} for an odd number of boundary sides.
 LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region, const Progress& progress);
 
 // Given quads for the region, numbered as in LayoutEdit. Throws Error{InvalidInput} if they do not fill it.
@@ -28,7 +29,8 @@ LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 
 // Why quads, numbered as in LayoutEdit, do not fill a disk with so many corners: what "new_quads" does; empty if they do.
 std::string find_filling_defect(const std::vector<std::array<int, 4>>& quads, int corners);
 
-// Why the surface with the edit done would be no base to refine from: a node with too few or too many quads, or two nodes joined twice; empty if it is one.
+// Why the surface with the edit done would be no base to refine from: a node with too few or too many quads, or two nodes joined twice; empty if it
+// is one.
 std::string find_edit_defect(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit);
 
 }  // namespace hybrid_mesh

@@ -52,11 +52,11 @@ BaseMap carried(LayoutSearchResult found, const GlobalMapOptions& options, const
   return out;
 }
 
-// A coarse surface may be too coarse for the map: its triangles would have to bend. Then a finer one is taken, at last the surface itself. Where skin is to be grown (`finer`), a
-// base of more quads serves better: that is left to the caller.
+// A coarse surface may be too coarse for the map: its triangles would have to bend. Then a finer one is taken, at last the surface itself. Where skin
+// is to be grown (`finer`), a base of more quads serves better: that is left to the caller.
 template <class Search>
-BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, bool finer, const GlobalMapOptions& options, const Progress& progress,
-                           const Search& search) {
+BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, bool finer, const GlobalMapOptions& options,
+                           const Progress& progress, const Search& search) {
   std::vector<LevelEdits> edits;
   LayoutScript script;
   for (const double factor : {1.0, 2.0, kInfinity}) {

@@ -11,7 +11,8 @@ namespace {
 
 double area_of(const TriangleSurface& surface) {
   double area = 0;
-  for (const auto& f : surface.faces) area += 0.5 * (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  for (const auto& f : surface.faces)
+    area += 0.5 * (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
   return area;
 }
 
@@ -32,14 +33,19 @@ PatchedSurface by_surface(PatchedSurface patches, const CutSurface& cut) {
 }  // namespace
 
 CarriedMap::CarriedMap(const TriangleSurface& surface, CutSurface cut)
-    : layout(by_surface(std::move(cut.patches), cut)), surface_(surface), collapsed_(std::move(cut.collapsed)), log_(std::move(cut.log)), faces_(faces_of(collapsed_)) {}
+    : layout(by_surface(std::move(cut.patches), cut)),
+      surface_(surface),
+      collapsed_(std::move(cut.collapsed)),
+      log_(std::move(cut.log)),
+      faces_(faces_of(collapsed_)) {}
 
 void CarriedMap::carry(double vertices, const GlobalMapOptions& options, const Progress& progress) {
   if (log_.empty() || collapsed_.vertex_count >= vertices) return;
   ChartMesh coarse = charts;
   const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress.part(0, 0.1));
   ChartMesh fine(coarse, collapsed_, surface_.points, area_of(surface_), vertex_of);
-  const std::size_t wanted = vertices < static_cast<double>(surface_.points.size()) ? static_cast<std::size_t>(vertices) - collapsed_.vertex_count : log_.size();
+  const std::size_t wanted =
+      vertices < static_cast<double>(surface_.points.size()) ? static_cast<std::size_t>(vertices) - collapsed_.vertex_count : log_.size();
   const std::size_t undone = std::min(wanted, log_.size());
   carry_map(fine, {log_.end() - static_cast<std::ptrdiff_t>(undone), log_.end()}, options, progress.part(0.1, 1));
   log_.resize(log_.size() - undone);

@@ -225,7 +225,8 @@ class LayoutSearch {
       part_at_nodes(s, wide);
     }
     std::vector<PatchRegion> regions = disks_around(s, wide);
-    std::stable_sort(regions.begin(), regions.end(), [&](const PatchRegion& a, const PatchRegion& b) { return sum_over(a, share) < sum_over(b, share); });
+    std::stable_sort(regions.begin(), regions.end(),
+                     [&](const PatchRegion& a, const PatchRegion& b) { return sum_over(a, share) < sum_over(b, share); });
     return regions;
   }
   static double sum_over(const PatchRegion& region, const std::vector<double>& of) {
@@ -239,7 +240,8 @@ class LayoutSearch {
     const PatchedSurface& s = mapped_.surface;
     const std::vector<double> share = area_shares();
     std::vector<PatchRegion> regions;
-    // How many new quads a region gets where there are `count` in all. The last one makes up for what those that stay are more or fewer than even ones, as far as its own may differ.
+    // How many new quads a region gets where there are `count` in all. The last one makes up for what those that stay are more or fewer than even
+    // ones, as far as its own may differ.
     const auto wanted = [&](std::size_t i, double count) {
       const double even = std::max(1.0, sum_over(regions[i], share) * options_->even_quads);
       if (i + 1 < regions.size()) return even;
@@ -545,22 +547,24 @@ class LayoutSearch {
 
   double worth(const Candidate& c) const { return c.gain - options_->price * c.edit.growth() - options_->irregular_price * c.irregular; }
 
-  CarriedMap best_;                // the best found
+  CarriedMap best_;  // the best found
   const LayoutScript* script_;
   LayoutScript made_;
   std::optional<ChartMesh> fresh_;
-  MappedSurface mapped_;           // cut along the best layout, or an edited one
+  MappedSurface mapped_;                          // cut along the best layout, or an edited one
   const LayoutSearchOptions* options_ = nullptr;  // of the present level
   std::vector<LevelEdits> best_edits_, edits_{1};
   int most_ = 0;                   // quads that the layout may grow to
   double least_ = 0, excess_ = 0;  // energy of the best and of the fresh map beyond an isometry's, in quads of the present level
   double scale_ = 1;
-  std::vector<double> energy_;    // per patch, beyond an isometry's
+  std::vector<double> energy_;  // per patch, beyond an isometry's
 };
 
 }  // namespace
 
-LayoutSearchResult search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress) { return LayoutSearch(std::move(map)).run(options, progress); }
+LayoutSearchResult search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress) {
+  return LayoutSearch(std::move(map)).run(options, progress);
+}
 
 LayoutSearchResult repeat_search(CarriedMap map, const LayoutScript& script, const Progress& progress) {
   if (script.levels.empty()) throw Error(ErrorCode::Internal, "a script has no level");

@@ -29,7 +29,8 @@ double diagonal_of(const TriangleSurface& mesh) {
 
 double mean_side(const std::vector<Vec3>& corners) {
   double length = 0;
-  for (std::size_t k = 0; k < corners.size(); ++k) length += (corners[(k + 1) % corners.size()] - corners[k]).norm() / static_cast<double>(corners.size());
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    length += (corners[(k + 1) % corners.size()] - corners[k]).norm() / static_cast<double>(corners.size());
   return length;
 }
 
@@ -40,7 +41,8 @@ void snap_to_corners(std::vector<DrawnStroke>& strokes, const std::vector<Vec3>&
     if (s.points.size() < 2) continue;
     for (Vec3* end : {&s.points.front(), &s.points.back()}) {
       const Vec3 p = *end;
-      const auto nearest = std::min_element(corners.begin(), corners.end(), [&](const Vec3& a, const Vec3& b) { return (a - p).squaredNorm() < (b - p).squaredNorm(); });
+      const auto nearest = std::min_element(corners.begin(), corners.end(),
+                                            [&](const Vec3& a, const Vec3& b) { return (a - p).squaredNorm() < (b - p).squaredNorm(); });
       if ((*nearest - p).norm() < kCornerReach * length) *end = *nearest;
     }
   }
@@ -90,12 +92,13 @@ LayoutEdit find_edit(const PatchedSurface& surface, const PatchRegion& region, c
   return edit;
 }
 
-// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave slivers beside the lines, thinner every
-// time.
+// A level whose map was glued of patches has vertices along all their sides. They stay there: moved off and cut again, each operation would leave
+// slivers beside the lines, thinner every time.
 ChartMesh held_on_lines(ChartMesh charts) {
   const auto on_line = [](double x) { return x == std::round(x); };
   for (std::size_t v = 0; v < charts.uv.size(); ++v)
-    if (charts.movable(static_cast<int>(v)) && (on_line(charts.uv[v].real()) || on_line(charts.uv[v].imag()))) charts.kind[v] = ChartMesh::Kind::Pinned;
+    if (charts.movable(static_cast<int>(v)) && (on_line(charts.uv[v].real()) || on_line(charts.uv[v].imag())))
+      charts.kind[v] = ChartMesh::Kind::Pinned;
   return charts;
 }
 
@@ -117,7 +120,8 @@ LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const R
   std::vector<PatchMap> maps = extract_patch_maps(rounded, map.layout, surface.faces, progress.part(0, 0.2));
   MappedSurface mapped = glue_patch_maps(maps, map.layout, surface.faces);
   const std::optional<PatchRegion> region = make_region(mapped.surface, repatch.patches, repatch.start);
-  if (!region) throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
+  if (!region)
+    throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
   LayoutEdit made;
   LayoutChange change;
   if (repatch.pattern.kind == RegionPattern::Kind::Drawn) {

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "layout/search/base_map.h"
 #include "layout/drawn/drawn_layout.h"
+#include "layout/search/base_map.h"
 
 namespace hybrid_mesh {
 
@@ -31,10 +31,10 @@ struct RegionRepatch {
   int buffer_rings = 1;   // so many rings of quads around are relaxed with the new ones; 0: none
 };
 
-// Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is relaxed there and in the rings
-// around. What lies farther off keeps its map exactly. `map`: that of the region's level over `surface`; it is changed, and so is `map.changed`. Returns the edit.
-// Throws LayoutError for curves that make no quads of the region, Error{InvalidInput} if the quads are no disk or the pattern does not fit it, Error{Internal} if no map is found: then
-// `map` is as it was.
+// Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is
+// relaxed there and in the rings around. What lies farther off keeps its map exactly. `map`: that of the region's level over `surface`; it is
+// changed, and so is `map.changed`. Returns the edit. Throws LayoutError for curves that make no quads of the region, Error{InvalidInput} if the
+// quads are no disk or the pattern does not fit it, Error{Internal} if no map is found: then `map` is as it was.
 LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const RegionRepatch& region, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers to every query of a hierarchy found the long way: the sides of all leaves are cut into the finest pieces there are, and pieces are matched with their twins.
+// Answers to every query of a hierarchy found the long way: the sides of all leaves are cut into the finest pieces there are, and pieces are matched
+// with their twins.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -187,8 +188,8 @@ class BruteForce {
   const HybridMesh& mesh_;
   std::vector<int> leaves_;
   std::vector<std::pair<HalfEdge, HalfEdge>> parts_;
-  std::vector<SideLink> held_, owner_;     // per half-edge: the active node, the leaf to its left
-  std::vector<HalfEdge> next_, before_;    // per piece: in the loop of its leaf
+  std::vector<SideLink> held_, owner_;   // per half-edge: the active node, the leaf to its left
+  std::vector<HalfEdge> next_, before_;  // per piece: in the loop of its leaf
   std::vector<HalfEdge> pieces_;
   std::map<VertexId, std::set<int>> leaving_;
   std::set<VertexId> corners_;
@@ -199,7 +200,9 @@ class BruteForce {
 inline std::string find_wrong_answer(const HybridMesh& mesh) {
   const BruteForce truth(mesh);
   if (!truth.problems().empty()) return truth.problems()[0];
-  const auto name = [](const char* query, int n, int s) { return std::string(query) + " of node " + std::to_string(n) + ", side or corner " + std::to_string(s); };
+  const auto name = [](const char* query, int n, int s) {
+    return std::string(query) + " of node " + std::to_string(n) + ", side or corner " + std::to_string(s);
+  };
   for (int n = 0; n < mesh.node_count(); ++n)
     for (int s = 0; s < 4; ++s) {
       if (mesh.removed_neighbour(n, s) != truth.removed_neighbour(n, s)) return name("removed_neighbour", n, s);
@@ -210,7 +213,8 @@ inline std::string find_wrong_answer(const HybridMesh& mesh) {
       const std::vector<int> around = mesh.leaves_at_corner(n, s);
       if (mesh.is_leaf(n) && around != truth.leaves_at_corner(n, s)) return name("leaves_at_corner", n, s);
       const VertexId vertex = mesh.corner(n, s);
-      if (truth.is_used(vertex) && std::set<int>(around.begin(), around.end()) != truth.leaves_with(vertex)) return name("leaves_at_corner, in no order,", n, s);
+      if (truth.is_used(vertex) && std::set<int>(around.begin(), around.end()) != truth.leaves_with(vertex))
+        return name("leaves_at_corner, in no order,", n, s);
     }
   const HybridMesh::LeafCounts a = mesh.leaf_counts(), b = truth.counts();
   if (a.vertices != b.vertices || a.faces != b.faces || a.hanging != b.hanging || a.euler != b.euler) return "leaf_counts";

@@ -17,7 +17,8 @@
 namespace hybrid_mesh {
 namespace {
 
-// For each corner of a region the number of quads inside that makes it regular: four around it with those outside, two on the mesh's boundary; at least one.
+// For each corner of a region the number of quads inside that makes it regular: four around it with those outside, two on the mesh's boundary; at
+// least one.
 std::vector<int> regular_quads(const DiskRegion& region) {
   std::vector<int> result;
   for (std::size_t k = 0; k < region.corners.size(); ++k) result.push_back(std::max(1, (region.on_mesh_boundary[k] ? 2 : 4) - region.outside[k]));
@@ -50,8 +51,8 @@ std::vector<int> active_of_level(const HybridMesh& mesh, int level) {
 }
 
 bool same(const Repatch& a, const Repatch& b) {
-  if (a.level != b.level || a.removed != b.removed || a.new_vertices != b.new_vertices || a.quads != b.quads || a.boundary != b.boundary || a.kind != b.kind ||
-      a.sides.size() != b.sides.size())
+  if (a.level != b.level || a.removed != b.removed || a.new_vertices != b.new_vertices || a.quads != b.quads || a.boundary != b.boundary ||
+      a.kind != b.kind || a.sides.size() != b.sides.size())
     return false;
   for (std::size_t q = 0; q < a.sides.size(); ++q)
     for (int s = 0; s < 4; ++s) {
@@ -62,8 +63,8 @@ bool same(const Repatch& a, const Repatch& b) {
 }
 
 bool same(const HierarchyParts& a, const HierarchyParts& b) {
-  if (a.base_vertices != b.base_vertices || a.base_quads != b.base_quads || a.base_links != b.base_links || a.refined != b.refined || a.enabled != b.enabled ||
-      a.operations.size() != b.operations.size())
+  if (a.base_vertices != b.base_vertices || a.base_quads != b.base_quads || a.base_links != b.base_links || a.refined != b.refined ||
+      a.enabled != b.enabled || a.operations.size() != b.operations.size())
     return false;
   for (std::size_t o = 0; o < a.operations.size(); ++o)
     if (!same(a.operations[o], b.operations[o])) return false;
@@ -72,9 +73,11 @@ bool same(const HierarchyParts& a, const HierarchyParts& b) {
 
 // Everything that the hierarchy tells of itself.
 std::vector<std::int64_t> everything(const HybridMesh& mesh) {
-  std::vector<std::int64_t> result{mesh.node_count(), mesh.operation_count(), mesh.leaf_counts().vertices, mesh.leaf_counts().hanging, mesh.leaf_counts().euler};
+  std::vector<std::int64_t> result{mesh.node_count(), mesh.operation_count(), mesh.leaf_counts().vertices, mesh.leaf_counts().hanging,
+                                   mesh.leaf_counts().euler};
   for (int n = 0; n < mesh.node_count(); ++n) {
-    for (std::int64_t x : {mesh.level(n), mesh.parent(n), mesh.first_child(n), mesh.root(n), mesh.inserted_by(n), mesh.removed_by(n), static_cast<int>(mesh.is_active(n))})
+    for (std::int64_t x : {mesh.level(n), mesh.parent(n), mesh.first_child(n), mesh.root(n), mesh.inserted_by(n), mesh.removed_by(n),
+                           static_cast<int>(mesh.is_active(n))})
       result.push_back(x);
     for (int s = 0; s < 4; ++s) {
       const SideLink other = mesh.neighbour(n, s);
@@ -178,7 +181,8 @@ TEST(IrregularOperations, TubesJoinBoundariesOfAnySizes) {
   struct Case {
     int width_a, height_a, width_b, height_b;
   };
-  for (const Case& c : {Case{1, 1, 1, 1}, Case{1, 1, 2, 1}, Case{2, 1, 1, 1}, Case{3, 2, 3, 2}, Case{1, 1, 5, 5}, Case{5, 4, 1, 1}, Case{6, 1, 2, 2}, Case{14, 5, 1, 1}})
+  for (const Case& c : {Case{1, 1, 1, 1}, Case{1, 1, 2, 1}, Case{2, 1, 1, 1}, Case{3, 2, 3, 2}, Case{1, 1, 5, 5}, Case{5, 4, 1, 1}, Case{6, 1, 2, 2},
+                        Case{14, 5, 1, 1}})
     for (int turn : {0, 1, -1, 3, 100}) {
       SCOPED_TRACE(testing::Message() << c.width_a << "x" << c.height_a << " and " << c.width_b << "x" << c.height_b << ", turn " << turn);
       HybridMesh mesh = square_grid(4);
@@ -319,10 +323,13 @@ TEST(IrregularOperations, NoChoiceJoinsTwoVerticesTwice) {
     if (n != two[0] && n != two[1]) others.push_back(n);
   const DiskRegion region = find_disk_region(mesh, two);
   int middle = 0;  // first of the corners that the middle edge joins
-  const auto has = [&](int n, VertexId v) { return mesh.corner(n, 0) == v || mesh.corner(n, 1) == v || mesh.corner(n, 2) == v || mesh.corner(n, 3) == v; };
+  const auto has = [&](int n, VertexId v) {
+    return mesh.corner(n, 0) == v || mesh.corner(n, 1) == v || mesh.corner(n, 2) == v || mesh.corner(n, 3) == v;
+  };
   while (!has(two[0], region.corners[middle]) || !has(two[1], region.corners[middle])) ++middle;
   const auto halves = [](int from) {
-    return std::vector<std::array<int, 4>>{{from % 6, (from + 1) % 6, (from + 2) % 6, (from + 3) % 6}, {(from + 3) % 6, (from + 4) % 6, (from + 5) % 6, from % 6}};
+    return std::vector<std::array<int, 4>>{{from % 6, (from + 1) % 6, (from + 2) % 6, (from + 3) % 6},
+                                           {(from + 3) % 6, (from + 4) % 6, (from + 5) % 6, from % 6}};
   };
   const DiskRegion back = find_disk_region(mesh, others);
   const int start = static_cast<int>(std::find(back.corners.begin(), back.corners.end(), region.corners[middle]) - back.corners.begin());
@@ -362,7 +369,8 @@ TEST(IrregularOperations, NoCoarserOperationDoublesAnEdge) {
   }
   ASSERT_TRUE(joined);
   const DiskRegion region = find_disk_region(mesh, around, from(around, u));
-  const int n = static_cast<int>(region.corners.size()), at = static_cast<int>(std::find(region.corners.begin(), region.corners.end(), w) - region.corners.begin());
+  const int n = static_cast<int>(region.corners.size()),
+            at = static_cast<int>(std::find(region.corners.begin(), region.corners.end(), w) - region.corners.begin());
   ASSERT_EQ(at % 2, 1);
   // Quads in a fan around u on both sides of the new edge.
   std::vector<std::array<int, 4>> fan;
@@ -401,7 +409,8 @@ struct SequenceBase {
 };
 
 HybridMesh two_components() {
-  return HybridMesh::from_base(14, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {8, 9, 12, 11}, {9, 10, 13, 12}});
+  return HybridMesh::from_base(14,
+                               {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {8, 9, 12, 11}, {9, 10, 13, 12}});
 }
 
 // A quad whose sides 1 and 3 are glued: a ring.
@@ -628,7 +637,8 @@ class Sequence {
     } else {
       kind = "free_layout";
       const DiskRegion disk = find_disk_region(mesh_, region);
-      draft = disk.reason.empty() && disk.corners.size() >= 4 ? free_layout(mesh_, region, random_layout(disk)) : OperationDraft{{}, "no disk: " + disk.reason};
+      draft = disk.reason.empty() && disk.corners.size() >= 4 ? free_layout(mesh_, region, random_layout(disk))
+                                                              : OperationDraft{{}, "no disk: " + disk.reason};
     }
     log_ << "; " << kind << " of level " << level << " at";
     for (int n : draft.repatch.removed) log_ << " " << n;
@@ -690,9 +700,8 @@ std::vector<std::pair<int, int>> blocks() {
   return result;
 }
 
-INSTANTIATE_TEST_SUITE_P(Hierarchy, RandomSequences, testing::ValuesIn(blocks()), [](const auto& info) {
-  return sequence_bases()[info.param.first].name + "_" + std::to_string(info.param.second);
-});
+INSTANTIATE_TEST_SUITE_P(Hierarchy, RandomSequences, testing::ValuesIn(blocks()),
+                         [](const auto& info) { return sequence_bases()[info.param.first].name + "_" + std::to_string(info.param.second); });
 
 }  // namespace
 }  // namespace hybrid_mesh

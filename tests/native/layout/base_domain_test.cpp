@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <random>
 #include <set>
@@ -87,7 +86,8 @@ TEST(EditMesh, RandomOperationsKeepTheTopologyAndUndoExactly) {
     expect_sound(mesh);
     EXPECT_EQ(euler(mesh), chi);
     EXPECT_GT(log.size(), 50u);
-    for (std::size_t i = log.size(); i-- > 0;) log[i].kind == MeshEdit::Kind::Flip ? mesh.undo_flip(log[i].half_edge) : mesh.undo_collapse(log[i].half_edge);
+    for (std::size_t i = log.size(); i-- > 0;)
+      log[i].kind == MeshEdit::Kind::Flip ? mesh.undo_flip(log[i].half_edge) : mesh.undo_collapse(log[i].half_edge);
     EXPECT_EQ(mesh.origin, before.origin);
     EXPECT_EQ(mesh.opposite, before.opposite);
     EXPECT_EQ(mesh.edge, before.edge);

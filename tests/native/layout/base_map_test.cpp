@@ -88,7 +88,8 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
       if (!edit) continue;
       ++applied;
       const int before = fine.surface.patch_count(), irregular = irregular_nodes(fine.surface);
-      const int growth = *irregular_growth(fine.surface, *make_region(fine.surface, edit->patches, edit->start), *edit, node_valences(fine.surface), boundary_nodes(fine.surface));
+      const int growth = *irregular_growth(fine.surface, *make_region(fine.surface, edit->patches, edit->start), *edit, node_valences(fine.surface),
+                                           boundary_nodes(fine.surface));
       PatchedSurface nodes_alone = fine.surface;
       change_layout(nodes_alone, *edit);
       for (MappedSurface* m : {&fine, &coarse}) {
@@ -176,7 +177,8 @@ TEST(BaseMap, IsBijectiveAndCarriedToEveryVertex) {
       EXPECT_STREQ(find_map_defect(m), "");
       for (const auto& t : m.triangles) area += (m.positions[t[1]] - m.positions[t[0]]).cross(m.positions[t[2]] - m.positions[t[0]]).norm();
     }
-    for (const auto& f : surface.faces) whole += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+    for (const auto& f : surface.faces)
+      whole += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
     EXPECT_NEAR(area, whole, 1e-9 * whole);
     // Without boundary the coarse surface serves: every vertex of the surface is one of the map's.
     if (soup.points.size() != ball(20, 0.5).points.size()) {

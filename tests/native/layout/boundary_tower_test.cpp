@@ -107,7 +107,8 @@ TEST(BoundaryTower, TakesItsNodesInAnyOrder) {
 
 TEST(BoundaryTower, PlacesItsNodesEvenlyFromTheSharpestTurnOn) {
   const TriangleSurface square = testing::unit(repaired(grid(12, 12)));
-  for (const Vec3& p : corners_of(grow(square, {{}, 1}))) EXPECT_NEAR(std::min(std::abs(p.x()), std::abs(p.y())), 0.5 / std::sqrt(2.0), 1e-9) << p.transpose();
+  for (const Vec3& p : corners_of(grow(square, {{}, 1})))
+    EXPECT_NEAR(std::min(std::abs(p.x()), std::abs(p.y())), 0.5 / std::sqrt(2.0), 1e-9) << p.transpose();
   const TriangleSurface surface = open_ball();
   const BoundaryLoop loop = boundary_loops(surface).front();
   const std::vector<Vec3> corners = corners_of(grow(surface, {}));

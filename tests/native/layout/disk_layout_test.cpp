@@ -59,7 +59,8 @@ std::string find_defect(const DiskLayout& layout, int n) {
     if (std::set<int>(quad.begin(), quad.end()).size() != 4) return "a quad with a node twice";
     for (int i = 0; i < 4; ++i) {
       if (quad[i] < 0 || quad[i] >= nodes) return "a node out of range";
-      if (!sides.try_emplace({quad[i], quad[(i + 1) % 4]}, static_cast<int>(q)).second) return "two quads on one side of an edge, or two edges between two nodes";
+      if (!sides.try_emplace({quad[i], quad[(i + 1) % 4]}, static_cast<int>(q)).second)
+        return "two quads on one side of an edge, or two edges between two nodes";
     }
   }
   int edges = 0, boundary = 0;
@@ -96,7 +97,8 @@ std::string find_defect(const DiskLayout& layout, int n) {
   return "";
 }
 
-// By how many right angles the boundary turns short of a full circle: so many inner nodes of three quads (or of five, if negative) there are more than of the other kind.
+// By how many right angles the boundary turns short of a full circle: so many inner nodes of three quads (or of five, if negative) there are more
+// than of the other kind.
 int missing_turns(const std::vector<int>& around, int n) { return 4 - 2 * n + std::accumulate(around.begin(), around.begin() + n, 0); }
 
 // The least sum of differences of any rectangle's boundary from the wishes.
@@ -163,12 +165,14 @@ TEST(DiskLayout, RectanglesAreGrids) {
       }
 }
 
-// The numbers of quads at the boundary of a simply connected set of cells, counter-clockwise; empty if the boundary meets a point twice or is not one circle.
+// The numbers of quads at the boundary of a simply connected set of cells, counter-clockwise; empty if the boundary meets a point twice or is not one
+// circle.
 std::vector<int> boundary_of_cells(const std::set<std::pair<int, int>>& cells) {
   std::map<std::pair<int, int>, std::pair<int, int>> next;
   std::map<std::pair<int, int>, int> around;
   for (const auto& [x, y] : cells) {
-    const std::pair<int, int> corners[4] = {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}, across[4] = {{x, y - 1}, {x + 1, y}, {x, y + 1}, {x - 1, y}};
+    const std::pair<int, int> corners[4] = {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}},
+                              across[4] = {{x, y - 1}, {x + 1, y}, {x, y + 1}, {x - 1, y}};
     for (int s = 0; s < 4; ++s) {
       ++around[corners[s]];
       if (!cells.count(across[s]) && !next.try_emplace(corners[s], corners[(s + 1) % 4]).second) return {};
@@ -369,9 +373,10 @@ TEST_P(RandomPatterns, HaveGoodLayouts) {
   summary.record();
 }
 
-INSTANTIATE_TEST_SUITE_P(DiskLayout, RandomPatterns, testing::Values(Pattern::Any, Pattern::MostlyStraight, Pattern::FewCorners), [](const auto& info) {
-  return info.param == Pattern::Any ? "Any" : info.param == Pattern::MostlyStraight ? "MostlyStraight" : "FewCorners";
-});
+INSTANTIATE_TEST_SUITE_P(DiskLayout, RandomPatterns, testing::Values(Pattern::Any, Pattern::MostlyStraight, Pattern::FewCorners),
+                         [](const auto& info) {
+                           return info.param == Pattern::Any ? "Any" : info.param == Pattern::MostlyStraight ? "MostlyStraight" : "FewCorners";
+                         });
 
 TEST(DiskLayoutWithRing, JoinsNoTwoBoundaryNodesInside) {
   for (int n = 4; n <= 20; n += 2) {

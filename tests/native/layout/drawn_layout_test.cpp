@@ -277,7 +277,9 @@ TEST_P(DrawnOnASquare, StrokesThatCannotBeUsedAreNamed) {
   endless.points[4].z() = infinity;
   DrawnStroke huge = far;
   huge.points[3].y() = 1e300;
-  const std::vector<DrawnStroke> strokes{far, broken, endless, huge, {}, {{Vec3(0.5, 0.5, 0)}}, {{Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0)}}, {{Vec3(0.5, 0.5, 0), Vec3(0.505, 0.5, 0)}}, near};
+  const std::vector<DrawnStroke> strokes{
+      far, broken, endless, huge, {}, {{Vec3(0.5, 0.5, 0)}}, {{Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0)}}, {{Vec3(0.5, 0.5, 0), Vec3(0.505, 0.5, 0)}},
+      near};
   const DrawnLayout d = drawn(strokes);
   ASSERT_EQ(d.problems.size(), 8u) << all_messages(d);
   for (int i = 0; i < 8; ++i) {
@@ -432,7 +434,9 @@ TEST(DrawnLayout, AFigureOfEightCrossesItself) {
 }
 
 TEST(DrawnLayout, LoopsOnATorusAndACylinder) {
-  const auto on_torus = [](double a, double b) { return Vec3((1 + 0.4 * std::cos(b)) * std::cos(a), (1 + 0.4 * std::cos(b)) * std::sin(a), 0.4 * std::sin(b)); };
+  const auto on_torus = [](double a, double b) {
+    return Vec3((1 + 0.4 * std::cos(b)) * std::cos(a), (1 + 0.4 * std::cos(b)) * std::sin(a), 0.4 * std::sin(b));
+  };
   DrawnStroke around, across;
   for (int i = 0; i <= 40; ++i) {
     around.points.push_back(on_torus(0.3 + 2 * std::numbers::pi * i / 40, 0.1));
@@ -481,8 +485,9 @@ TEST(DrawnLayout, ComponentsApart) {
 }
 
 TEST(DrawnLayout, WhateverIsScribbledTheLayoutIsSound) {
-  const std::vector<TriangleSurface> surfaces{unit(sphere(8)),           unit(repaired(ball(7, 0.2))), unit(repaired(torus(18, 9))), unit(repaired(cube())),
-                                              unit(repaired(grid(6, 6))), unit(repaired(glued_rectangle(12, 5, false, false)))};
+  const std::vector<TriangleSurface> surfaces{
+      unit(sphere(8)),        unit(repaired(ball(7, 0.2))), unit(repaired(torus(18, 9))),
+      unit(repaired(cube())), unit(repaired(grid(6, 6))),   unit(repaired(glued_rectangle(12, 5, false, false)))};
   for (int seed = 0; seed < 300; ++seed) {
     TestRandom random(seed);
     const TriangleSurface& surface = surfaces[seed % surfaces.size()];

@@ -26,9 +26,12 @@ inline double diagonal(const TriangleSurface& s) {
   return (high - low).norm();
 }
 
-inline Vec3 jitter(TestRandom& random, double size) { return size * Vec3(2 * random.unit() - 1, 2 * random.unit() - 1, 2 * random.unit() - 1) / std::sqrt(3.0); }
+inline Vec3 jitter(TestRandom& random, double size) {
+  return size * Vec3(2 * random.unit() - 1, 2 * random.unit() - 1, 2 * random.unit() - 1) / std::sqrt(3.0);
+}
 
-// A polyline of `pieces` pieces along curve(0) .. curve(1), going on or ending early by up to `gap` (a fraction of it), every point off by up to `noise`.
+// A polyline of `pieces` pieces along curve(0) .. curve(1), going on or ending early by up to `gap` (a fraction of it), every point off by up to
+// `noise`.
 inline DrawnStroke stroke(const std::function<Vec3(double)>& curve, int pieces, double gap, double noise, TestRandom& random) {
   DrawnStroke s;
   const double from = gap * (2 * random.unit() - 1), to = 1 + gap * (2 * random.unit() - 1);
@@ -59,12 +62,14 @@ inline const std::vector<std::pair<int, int>>& cube_edges() {
 }
 
 // The edges of a cube around `centre`, thrown on the surface from there: place(direction).
-inline std::vector<DrawnStroke> cube_strokes(const std::function<Vec3(const Vec3&)>& place, int pieces, double gap, double noise, std::uint64_t seed) {
+inline std::vector<DrawnStroke> cube_strokes(const std::function<Vec3(const Vec3&)>& place, int pieces, double gap, double noise,
+                                             std::uint64_t seed) {
   TestRandom random(seed);
   std::vector<DrawnStroke> strokes;
   const auto corner = [](int i) { return Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1); };
   for (const auto& [a, b] : cube_edges())
-    strokes.push_back(stroke([&, a = a, b = b](double t) { return place(Vec3(corner(a) + t * (corner(b) - corner(a)))); }, pieces, gap, noise, random));
+    strokes.push_back(
+        stroke([&, a = a, b = b](double t) { return place(Vec3(corner(a) + t * (corner(b) - corner(a)))); }, pieces, gap, noise, random));
   return strokes;
 }
 

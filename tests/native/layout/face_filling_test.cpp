@@ -108,7 +108,8 @@ PatchedSurface expect_filled(const TriangleSurface& surface, DrawnLayout drawn) 
         EXPECT_EQ(filled.mesh.points[filled.sides[q][i].front()], drawn.layout.mesh.points[drawn.layout.nodes[a]]);
       }
     }
-  for (int n = 0; n < filled.node_count; ++n) EXPECT_TRUE(valence[n] >= (on_boundary[n] ? 1 : 3) && valence[n] <= (on_boundary[n] ? 4 : 6)) << n << ": " << valence[n];
+  for (int n = 0; n < filled.node_count; ++n)
+    EXPECT_TRUE(valence[n] >= (on_boundary[n] ? 1 : 3) && valence[n] <= (on_boundary[n] ? 4 : 6)) << n << ": " << valence[n];
   const LayoutOutline outline = outline_of(filled);
   EXPECT_NO_THROW(QuadComplex{outline});
   PatchedSurface mapped = filled;
@@ -206,12 +207,14 @@ TEST(FaceFilling, LeavesOtherFacesAlone) {
   std::vector<DrawnStroke> strokes = chords(cube_corners(), cube_edges());
   // A diagonal makes two triangles of a face; without an edge far from it there is a face of six sides as well.
   const std::vector<DrawnStroke> diagonal = chords(cube_corners(), {{0, 3}});
-  strokes.erase(std::find_if(cube_edges().begin(), cube_edges().end(), [](const auto& e) { return e == std::pair(5, 7); }) - cube_edges().begin() + strokes.begin());
+  strokes.erase(std::find_if(cube_edges().begin(), cube_edges().end(), [](const auto& e) { return e == std::pair(5, 7); }) - cube_edges().begin() +
+                strokes.begin());
   strokes.push_back(diagonal.front());
   DrawnLayout drawn = layout_of(surface, strokes);
   ASSERT_EQ(drawn.problems.size(), 2u);
   const std::vector<DiskLayout> fillings = find_fillings(drawn.layout);
-  for (std::size_t f = 0; f < fillings.size(); ++f) EXPECT_EQ(fillings[f].quads.size(), std::vector<std::size_t>({0, 1, 0, 2})[drawn.layout.faces[f].side_count() - 3]);
+  for (std::size_t f = 0; f < fillings.size(); ++f)
+    EXPECT_EQ(fillings[f].quads.size(), std::vector<std::size_t>({0, 1, 0, 2})[drawn.layout.faces[f].side_count() - 3]);
   EXPECT_EQ(fill_faces(drawn).patch_count(), 0);
   EXPECT_EQ(drawn.problems.size(), 2u);
   // A closed curve: two faces that touch themselves, or have too few sides.

@@ -49,7 +49,8 @@ inline void expect_sound(const TriangleSurface& surface, const PatchLayout& l) {
     EXPECT_LT(std::sqrt(query.closest(l.mesh.points[v]).squared_distance), 1e-12 * size);
   }
   double before = 0, after = 0;
-  for (const auto& f : surface.faces) before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  for (const auto& f : surface.faces)
+    before += (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
   for (const auto& f : l.mesh.faces) after += (l.mesh.points[f[1]] - l.mesh.points[f[0]]).cross(l.mesh.points[f[2]] - l.mesh.points[f[0]]).norm();
   EXPECT_NEAR(after, before, 1e-9 * before);
   // Points of every triangle lie on its face of the surface.

@@ -89,7 +89,8 @@ TEST(LayoutTransfer, FromACoarseTriangulationToAFineOne) {
 TEST(LayoutTransfer, ADrawnLayoutOnOtherTriangulations) {
   const TriangleSurface coarse = unit(testing::sphere(5)), fine = unit(testing::sphere(31));
   const double radius = coarse.points[0].norm();
-  const DrawnLayout drawn = testing::layout_of(coarse, testing::cube_strokes([&](const Vec3& d) { return Vec3(radius * d.normalized()); }, 6, 0.02, 0.005, 3));
+  const DrawnLayout drawn =
+      testing::layout_of(coarse, testing::cube_strokes([&](const Vec3& d) { return Vec3(radius * d.normalized()); }, 6, 0.02, 0.005, 3));
   ASSERT_TRUE(drawn.problems.empty());
   const PatchedSurface patched = to_patched_surface(drawn.layout);
   LayoutOutline outline = outline_of(patched, false);
@@ -152,7 +153,8 @@ TEST(LayoutTransfer, WhatCannotBeIsSaidInWords) {
     EXPECT_TRUE(t.layout.faces.empty());
     return t.failure;
   };
-  const LayoutOutline of_ring = outline_of(base_of(ring, 30), false), of_cap = outline_of(base_of(cap, 30), false), of_sphere = outline_of(base_of(sphere, 30), false);
+  const LayoutOutline of_ring = outline_of(base_of(ring, 30), false), of_cap = outline_of(base_of(cap, 30), false),
+                      of_sphere = outline_of(base_of(sphere, 30), false);
   EXPECT_NE(failure(sphere, of_ring).find("Euler number 2"), std::string::npos);
   EXPECT_NE(failure(ring, of_sphere).find("Euler number 0"), std::string::npos);
   EXPECT_NE(failure(sphere, of_cap).find("1 boundary loops"), std::string::npos);

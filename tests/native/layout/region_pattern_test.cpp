@@ -38,7 +38,8 @@ TEST(FillingDefect, IsFoundInWhateverElseIsGiven) {
     const int q = random.below(static_cast<int>(filled.size())), i = random.below(4);
     expect_defect(filled, corners + 1);
     expect_defect(filled, corners - 1);
-    for (const int node : {-1, std::numeric_limits<int>::min(), std::numeric_limits<int>::max(), corners + 4 * static_cast<int>(filled.size()), filled[q][(i + 1) % 4], filled[q][(i + 2) % 4]}) {
+    for (const int node : {-1, std::numeric_limits<int>::min(), std::numeric_limits<int>::max(), corners + 4 * static_cast<int>(filled.size()),
+                           filled[q][(i + 1) % 4], filled[q][(i + 2) % 4]}) {
       Quads other = filled;
       other[q][i] = node;
       expect_defect(other);

@@ -25,12 +25,9 @@ struct Shape {
 };
 
 std::vector<Shape> shapes() {
-  return {{"ball", unit(repaired(ball(6)))},
-          {"open ball", unit(repaired(ball(6, 0.3)))},
-          {"torus", unit(repaired(torus(14, 8)))},
-          {"cube", unit(repaired(cube()))},
-          {"grid", unit(repaired(grid(5, 4)))},
-          {"cylinder", unit(repaired(glued_rectangle(9, 4, false, false)))}};
+  return {{"ball", unit(repaired(ball(6)))},       {"open ball", unit(repaired(ball(6, 0.3)))},
+          {"torus", unit(repaired(torus(14, 8)))}, {"cube", unit(repaired(cube()))},
+          {"grid", unit(repaired(grid(5, 4)))},    {"cylinder", unit(repaired(glued_rectangle(9, 4, false, false)))}};
 }
 
 // From a vertex through faces at random, to the apex of the last.

@@ -47,7 +47,7 @@ TEST(Transition, InverseAndCompositionAreThoseOfTheMap) {
       EXPECT_EQ(t * t.inverse(), Transition());
       EXPECT_EQ(t.inverse(), across(j, i));
       const Complex z(0.3, 0.8);
-      EXPECT_LT(std::abs((t * across(j, i))(z) - z), 1e-15);
+      EXPECT_LT(std::abs((t * across(j, i))(z)-z), 1e-15);
       EXPECT_LT(std::abs(t.back(t(z)) - z), 1e-15);
     }
 }
@@ -116,12 +116,14 @@ TEST(GlobalMap, StaysBijectiveAndGetsBetterOnEveryKindOfSurface) {
       }
     }
     double whole = 0;
-    for (const auto& f : m.surface.faces) whole += 0.5 * (m.surface.points[f[1]] - m.surface.points[f[0]]).cross(m.surface.points[f[2]] - m.surface.points[f[0]]).norm();
+    for (const auto& f : m.surface.faces)
+      whole += 0.5 * (m.surface.points[f[1]] - m.surface.points[f[0]]).cross(m.surface.points[f[2]] - m.surface.points[f[0]]).norm();
     EXPECT_NEAR(area, whole, 1e-6 * whole);
   }
 }
 
-// A square of which the four corners of its one quad lie `turns` vertices farther along the boundary: its vertices wind around the middle, the more the farther out.
+// A square of which the four corners of its one quad lie `turns` vertices farther along the boundary: its vertices wind around the middle, the more
+// the farther out.
 PatchedSurface wound_square(int half, int turns) {
   const int n = 2 * half + 1;
   const auto index = [&](int x, int y) { return (y + half) * n + x + half; };

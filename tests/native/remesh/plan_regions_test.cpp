@@ -57,7 +57,8 @@ RemeshResult* PatternRegions::plain_ = nullptr;
 
 // Around the middle of a base quad, a row of two, an angle of three, and around a corner of the cube, where three quads meet.
 const std::vector<Json>& regions() {
-  static const std::vector<Json> all{{"1.0.2", "1.1.3", "1.2.0", "1.3.1"}, {"1.0.2", "1.1.3"}, {"1.0.2", "1.1.3", "1.2.0"}, {"0.0.0", "2.0.0", "4.0.0"}};
+  static const std::vector<Json> all{
+      {"1.0.2", "1.1.3", "1.2.0", "1.3.1"}, {"1.0.2", "1.1.3"}, {"1.0.2", "1.1.3", "1.2.0"}, {"0.0.0", "2.0.0", "4.0.0"}};
   return all;
 }
 
@@ -154,19 +155,49 @@ TEST_F(PatternRegions, WhatDoesNotFitIsRefusedWithItsPlace) {
       {"start", changed(turned, [](Json& o) { o.erase("start"); })},
       {".start[1]", changed(turned, [](Json& o) { o["start"][1] = 4; })},
       {"no quad 7.0.0", changed(turned, [](Json& o) { o["start"][0] = "7.0.0"; })},
-      {"start", changed(turned, [](Json& o) { o["start"] = {"1.2.2", 0}; })},   // elsewhere
-      {"start", changed(turned, [](Json& o) { o["start"] = {"1.0.2", 1}; })},   // between the two quads
-      {".new_quads[1]", changed(turned, [](Json& o) { o["new_quads"][1] = {4, 5, 0}; })},
+      {"start", changed(turned,
+                        [](Json& o) {
+                          o["start"] = {"1.2.2", 0};
+                        })},  // elsewhere
+      {"start", changed(turned,
+                        [](Json& o) {
+                          o["start"] = {"1.0.2", 1};
+                        })},  // between the two quads
+      {".new_quads[1]", changed(turned,
+                                [](Json& o) {
+                                  o["new_quads"][1] = {4, 5, 0};
+                                })},
       {".new_quads[1][3]", changed(turned, [](Json& o) { o["new_quads"][1][3] = -1; })},
       {"are none", changed(turned, [](Json& o) { o["new_quads"] = Json::array(); })},
-      {"boundary of 4 sides", changed(turned, [](Json& o) { o["new_quads"] = {{0, 1, 2, 3}}; })},
-      {"without gaps", changed(turned, [](Json& o) { o["new_quads"] = {{0, 1, 2, 7}, {2, 3, 4, 7}, {4, 5, 0, 7}}; })},
-      {"twice", changed(turned, [](Json& o) { o["new_quads"] = {{0, 1, 2, 1}, {4, 5, 0, 1}}; })},
-      {"disk", changed(cubes, [](Json& o) { o["quads"] = {"1.0.2", "1.2.0"}; })},
-      {"disk", changed(cubes, [](Json& o) { o["quads"] = {"1.0.2", "1.0.2"}; })},
+      {"boundary of 4 sides", changed(turned,
+                                      [](Json& o) {
+                                        o["new_quads"] = {{0, 1, 2, 3}};
+                                      })},
+      {"without gaps", changed(turned,
+                               [](Json& o) {
+                                 o["new_quads"] = {{0, 1, 2, 7}, {2, 3, 4, 7}, {4, 5, 0, 7}};
+                               })},
+      {"twice", changed(turned,
+                        [](Json& o) {
+                          o["new_quads"] = {{0, 1, 2, 1}, {4, 5, 0, 1}};
+                        })},
+      {"disk", changed(cubes,
+                       [](Json& o) {
+                         o["quads"] = {"1.0.2", "1.2.0"};
+                       })},
+      {"disk", changed(cubes,
+                       [](Json& o) {
+                         o["quads"] = {"1.0.2", "1.0.2"};
+                       })},
       {"level 2 has no quad 1.0", changed(cubes, [](Json& o) { o["quads"] = {"1.0"}; })},
-      {"corner 0 would have 8 quads", changed(turned, [](Json& o) { o["new_quads"] = {{0, 1, 2, 6}, {0, 6, 2, 7}, {0, 7, 2, 8}, {0, 8, 2, 3}, {0, 3, 4, 5}}; })},
-      {"new node 6 would have 2 quads", changed(turned, [](Json& o) { o["new_quads"] = {{0, 1, 4, 5}, {1, 2, 3, 6}, {3, 4, 1, 6}}; })},
+      {"corner 0 would have 8 quads", changed(turned,
+                                              [](Json& o) {
+                                                o["new_quads"] = {{0, 1, 2, 6}, {0, 6, 2, 7}, {0, 7, 2, 8}, {0, 8, 2, 3}, {0, 3, 4, 5}};
+                                              })},
+      {"new node 6 would have 2 quads", changed(turned,
+                                                [](Json& o) {
+                                                  o["new_quads"] = {{0, 1, 4, 5}, {1, 2, 3, 6}, {3, 4, 1, 6}};
+                                                })},
   };
   for (const auto& [words, operation] : mistakes) {
     // Its place among the operations as the plan has them.

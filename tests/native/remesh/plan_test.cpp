@@ -37,7 +37,8 @@ class PlanKinds : public ::testing::TestWithParam<std::tuple<BaseSize, Refinemen
   RemeshOptions options() const { return options_of(std::get<0>(GetParam()), std::get<1>(GetParam())); }
 };
 INSTANTIATE_TEST_SUITE_P(Remeshes, PlanKinds,
-                         ::testing::Combine(::testing::Values(BaseSize::Auto, BaseSize::Minimal), ::testing::Values(Refinement::Uniform, Refinement::Adaptive)));
+                         ::testing::Combine(::testing::Values(BaseSize::Auto, BaseSize::Minimal),
+                                            ::testing::Values(Refinement::Uniform, Refinement::Adaptive)));
 
 TEST_P(PlanKinds, RepeatARemeshByteForByte) {
   for (const PolygonSoup& soup : {spiked_ball(30), ball(14, 0.5), torus(40, 20)}) {
@@ -130,7 +131,8 @@ TEST_P(DrawnRegions, AreLaidOutAnewAndNothingElseChanges) {
   ASSERT_EQ(h.operation_count(), 1);
   EXPECT_EQ(h.operation(0).repatch.removed.size(), 4u);
   EXPECT_EQ(h.operation(0).roots.size(), 4u);
-  // Maps: those of the new quads, and of as many rings around as were asked for; two of them reach over the cube's edges, at whose ends three quads meet.
+  // Maps: those of the new quads, and of as many rings around as were asked for; two of them reach over the cube's edges, at whose ends three quads
+  // meet.
   EXPECT_EQ(expect_changed_in_places(plain_.hierarchy, h, 2), std::vector<int>({4, 16, 32})[GetParam()]);
   // All maps meet along their sides.
   const QuadMesh fine = h.level_mesh(4);
@@ -193,11 +195,15 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
   Json short_one = operation_;
   short_one["curves"][0]["points"][0] = short_one["curves"][0]["points"][1];
   for (int i = 0; i < 3; ++i)
-    short_one["curves"][0]["points"][0][i] = 0.5 * operation_["curves"][0]["points"][0][i].get<double>() + 0.5 * operation_["curves"][0]["points"][1][i].get<double>();
+    short_one["curves"][0]["points"][0][i] =
+        0.5 * operation_["curves"][0]["points"][0][i].get<double>() + 0.5 * operation_["curves"][0]["points"][1][i].get<double>();
   bool dangling = false;
   for (const LayoutProblem& p : problems(short_one)) dangling |= p.kind == LayoutProblem::Kind::Dangling;
   EXPECT_TRUE(dangling);
-  const std::vector<std::function<void(Json&)>> mistakes = {[](Json& o) { o["quads"][0] = "1.0"; }, [](Json& o) { o["quads"] = {"1.0.0", "1.2.2"}; },
+  const std::vector<std::function<void(Json&)>> mistakes = {[](Json& o) { o["quads"][0] = "1.0"; },
+                                                            [](Json& o) {
+                                                              o["quads"] = {"1.0.0", "1.2.2"};
+                                                            },
                                                             [](Json& o) { o["level"] = 0; }, [](Json& o) { o["buffer_rings"] = -1; },
                                                             [](Json& o) { o["quads"] = Json::array(); }};
   for (const auto& spoil : mistakes) {
@@ -212,7 +218,9 @@ TEST(Plan, AnOperationBeginsOnTheBoundaryOfItsQuads) {
   for (int side = 0; side < 4; ++side) {
     Json plan = cube_plan();
     const Json star = {{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 8}};
-    plan["levels"] = {{{"level", 1}, {"operations", {{{"kind", "repatch"}, {"quads", {"0.0", "0.1", "0.2", "0.3"}}, {"start", {"0.0", side}}, {"new_quads", star}}}}}};
+    plan["levels"] = {
+        {{"level", 1},
+         {"operations", {{{"kind", "repatch"}, {"quads", {"0.0", "0.1", "0.2", "0.3"}}, {"start", {"0.0", side}}, {"new_quads", star}}}}}};
     const std::string said = refusal_of([&] { plan_from_json(plan.dump()); });
     // Sides 1 and 2 lead to the middle of the four, and from it.
     EXPECT_EQ(said.find("operations[0].start") != std::string::npos, side == 1 || side == 2) << said;
@@ -228,12 +236,9 @@ TEST(Plan, EditsOfAnotherBaseAreNotMadeOnThisOne) {
   ASSERT_FALSE(plan["base"]["origin"]["rounds"].empty());
   ASSERT_FALSE(plan["base"]["origin"]["rounds"][0].empty());
   const std::vector<std::function<void(Json&)>> mistakes = {
-      [](Json& edit) { edit["patches"][0] = 999999; },
-      [](Json& edit) { edit["start"][0] = 2147483640; },
-      [](Json& edit) { edit["quads"][0][0] = 1000000000; },
-      [](Json& edit) { edit["inner_nodes"] = 2147483647; },
-      [](Json& edit) { edit["rings"] = 1000000000; },
-      [](Json& edit) { edit["quads"].erase(0); },
+      [](Json& edit) { edit["patches"][0] = 999999; },      [](Json& edit) { edit["start"][0] = 2147483640; },
+      [](Json& edit) { edit["quads"][0][0] = 1000000000; }, [](Json& edit) { edit["inner_nodes"] = 2147483647; },
+      [](Json& edit) { edit["rings"] = 1000000000; },       [](Json& edit) { edit["quads"].erase(0); },
   };
   for (const auto& spoil : mistakes) {
     Json bad = plan;
@@ -247,7 +252,9 @@ TEST(Plan, EditsOfAnotherBaseAreNotMadeOnThisOne) {
 TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
   const RemeshResult made = run(spiked_ball(24), options_of(BaseSize::Minimal, Refinement::Uniform));
   const Json good = Json::parse(made.plan);
-  const auto refused = [](const Json& plan) { return refusal_of([&] { plan_from_json(plan.dump()); }, {ErrorCode::InvalidInput, ErrorCode::Unsupported}); };
+  const auto refused = [](const Json& plan) {
+    return refusal_of([&] { plan_from_json(plan.dump()); }, {ErrorCode::InvalidInput, ErrorCode::Unsupported});
+  };
   EXPECT_EQ(refused(good), "");
   EXPECT_THROW(plan_from_json("{"), Error);
   EXPECT_THROW(plan_from_json("[]"), Error);
@@ -261,13 +268,19 @@ TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
       {"version 9", [](Json& p) { p["version"] = 9; }},
       {"no \"base\"", [](Json& p) { p.erase("base"); }},
       {"colour", [](Json& p) { p["base"]["colour"] = 1; }},
-      {"base.nodes[1]", [](Json& p) { p["base"]["nodes"][1] = {1, 2}; }},
+      {"base.nodes[1]",
+       [](Json& p) {
+         p["base"]["nodes"][1] = {1, 2};
+       }},
       {"base.nodes[1][2]", [](Json& p) { p["base"]["nodes"][1][2] = "far"; }},
       {"base.quads[0][3]", [](Json& p) { p["base"]["quads"][0][3] = 1000; }},
       {"base.quads[0][0]", [](Json& p) { p["base"]["quads"][0][0] = 0.5; }},
       {"base.quads[0][0]", [](Json& p) { p["base"]["quads"][0][0] = 18446744073709551615u; }},
       {"base.neighbours", [](Json& p) { p["base"]["neighbours"].erase(0); }},
-      {"base.neighbours[0][0]", [](Json& p) { p["base"]["neighbours"][0][0] = {0, 3}; }},
+      {"base.neighbours[0][0]",
+       [](Json& p) {
+         p["base"]["neighbours"][0][0] = {0, 3};
+       }},
       {operation + ".kind", [&](Json& p) { p["levels"][at]["operations"][0]["kind"] = "magic"; }},
       {operation + ".quads[0]", [&](Json& p) { p["levels"][at]["operations"][0]["quads"][0] = "0.9"; }},
       {operation, [&](Json& p) { p["levels"][at]["operations"][0]["quads"].erase(0); }},

@@ -75,7 +75,8 @@ inline std::map<std::pair<int, int>, Vec3> corners_of(const HybridMesh& mesh, in
   return out;
 }
 
-// The hierarchy is sound, of a ball's topology, and on `level` everything that has no map of its own lies where it lay. Returns how many quads of the level have one.
+// The hierarchy is sound, of a ball's topology, and on `level` everything that has no map of its own lies where it lay. Returns how many quads of the
+// level have one.
 inline int expect_changed_in_places(const HybridMesh& plain, const HybridMesh& made, int level) {
   EXPECT_TRUE(find_defects(made).empty());
   EXPECT_EQ(summarize_topology(to_soup(made.final_mesh())).euler, 2);

@@ -278,7 +278,8 @@ TEST(Fit, PullsAMeshOntoThePlaneItsSamplesLieIn) {
   h.refine_uniform(3);
   QuadMesh mesh = h.level_mesh(3);
   const std::vector<char> fixed(mesh.points.size(), 0);
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) mesh.points[v] = Vec3(mesh.location[v].u, mesh.location[v].v, 0.02 * std::sin(9.0 * static_cast<double>(v)));
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    mesh.points[v] = Vec3(mesh.location[v].u, mesh.location[v].v, 0.02 * std::sin(9.0 * static_cast<double>(v)));
   std::vector<FitSample> samples;
   for (int i = 0; i < 60; ++i)
     for (int j = 0; j < 60; ++j) samples.push_back({Vec3((i + 0.5) / 60, (j + 0.5) / 60, 0.1), Vec3(0, 0, 1), 1.0, 0});

@@ -48,9 +48,11 @@ PolygonSoup grid(int rows, int columns, bool torus, const std::function<Vec3(int
 PolygonSoup rod() {
   const double r = 0.1, length = 6, z0 = std::sqrt(1 - r * r), a0 = std::asin(r);
   std::vector<Vec2> profile;
-  for (int i = 1; i < 6; ++i) profile.push_back(Vec2(r * std::sin(std::numbers::pi / 12 * i), z0 + length - r + r * std::cos(std::numbers::pi / 12 * i)));
+  for (int i = 1; i < 6; ++i)
+    profile.push_back(Vec2(r * std::sin(std::numbers::pi / 12 * i), z0 + length - r + r * std::cos(std::numbers::pi / 12 * i)));
   for (int i = 0; i < 120; ++i) profile.push_back(Vec2(r, z0 + length - r - (length - r) * i / 120));
-  for (int i = 0; i < 39; ++i) profile.push_back(Vec2(std::sin(a0 + (std::numbers::pi - a0) * i / 40), std::cos(a0 + (std::numbers::pi - a0) * i / 40)));
+  for (int i = 0; i < 39; ++i)
+    profile.push_back(Vec2(std::sin(a0 + (std::numbers::pi - a0) * i / 40), std::cos(a0 + (std::numbers::pi - a0) * i / 40)));
   return grid(static_cast<int>(profile.size()), 24, false, [&](int i, int j) {
     const double a = 2 * std::numbers::pi * j / 24;
     return Vec3(profile[i].x() * std::cos(a), profile[i].x() * std::sin(a), profile[i].y());
@@ -58,7 +60,9 @@ PolygonSoup rod() {
 }
 
 // Pulls a point out along a direction where it is near a foot.
-Vec3 pulled(const Vec3& p, const Vec3& foot, const Vec3& direction) { return p + 1.5 * std::exp(-(p - foot).squaredNorm() / (0.06 * 0.06)) * direction; }
+Vec3 pulled(const Vec3& p, const Vec3& foot, const Vec3& direction) {
+  return p + 1.5 * std::exp(-(p - foot).squaredNorm() / (0.06 * 0.06)) * direction;
+}
 
 PolygonSoup torus_with_a_spike() {
   return grid(300, 120, true, [](int i, int j) {

@@ -41,7 +41,8 @@ PolygonSoup sphere(double r, int n) {
         }
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-          for (const int v : {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i}) soup.indices.push_back(first + v);
+          for (const int v : {j * (n + 1) + i, j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1, (j + 1) * (n + 1) + i})
+            soup.indices.push_back(first + v);
           soup.offsets.push_back(soup.offsets.back() + 4);
         }
     }
@@ -169,7 +170,8 @@ TEST(Distance, HausdorffAgreesWithADenseLattice) {
   for (int seed = 1; seed <= 10; ++seed) pairs.emplace_back(random_soup(seed, 12, 10), random_soup(seed + 100, 12, 10));
   for (const auto& [a, b] : pairs) {
     const int n = 60;
-    const double lattice = std::max(lattice_distance(a, b, n), lattice_distance(b, a, n)), width = std::max(longest_edge(a), longest_edge(b)) / (n - 1);
+    const double lattice = std::max(lattice_distance(a, b, n), lattice_distance(b, a, n)),
+                 width = std::max(longest_edge(a), longest_edge(b)) / (n - 1);
     for (const SurfaceDistance& d : {distance(a, b, {.samples = 10, .seed = 1}), distance(b, a, {.samples = 10, .seed = 1})}) {
       EXPECT_GE(d.hausdorff * d.diagonal, lattice / 1.0101);
       EXPECT_LE(d.hausdorff * d.diagonal, lattice + width);

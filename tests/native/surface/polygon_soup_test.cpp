@@ -144,14 +144,15 @@ TEST(PolygonSoup, PlyHeadersWithEveryLineEnd) {
 template <class T>
 std::string ply_of_type(const std::string& type, const std::string& count_type, bool big) {
   const std::string format = big ? "binary_big_endian" : "binary_little_endian";
-  std::string bytes = "ply\nformat " + format + " 1.0\ncomment of many things\nobj_info more\nelement camera 2\nproperty double a\nproperty list uchar short b\n" +
-                      "element vertex 4\nproperty uchar red\nproperty " + type + " x\nproperty " + type + " y\nproperty list ushort float w\nproperty " +
-                      type + " z\nelement face 2\nproperty short flags\nproperty list " + count_type + " " + (type[0] == 'f' || type[0] == 'd' ? "int" : type) +
-                      " vertex_index\nproperty list uchar float texcoord\nelement edge 1\nproperty int vertex1\nend_header\n";
+  std::string bytes =
+      "ply\nformat " + format + " 1.0\ncomment of many things\nobj_info more\nelement camera 2\nproperty double a\nproperty list uchar short b\n" +
+      "element vertex 4\nproperty uchar red\nproperty " + type + " x\nproperty " + type + " y\nproperty list ushort float w\nproperty " + type +
+      " z\nelement face 2\nproperty short flags\nproperty list " + count_type + " " + (type[0] == 'f' || type[0] == 'd' ? "int" : type) +
+      " vertex_index\nproperty list uchar float texcoord\nelement edge 1\nproperty int vertex1\nend_header\n";
   for (int i = 0; i < 2; ++i) bytes += raw(1.5, big) + raw<std::uint8_t>(2, big) + raw<std::int16_t>(3, big) + raw<std::int16_t>(4, big);
   for (const auto& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)})
-    bytes += raw<std::uint8_t>(9, big) + raw(static_cast<T>(p[0]), big) + raw(static_cast<T>(p[1]), big) + raw<std::uint16_t>(1, big) + raw(2.5f, big) +
-             raw(static_cast<T>(p[2]), big);
+    bytes += raw<std::uint8_t>(9, big) + raw(static_cast<T>(p[0]), big) + raw(static_cast<T>(p[1]), big) + raw<std::uint16_t>(1, big) +
+             raw(2.5f, big) + raw(static_cast<T>(p[2]), big);
   for (const auto& t : {std::array<int, 3>{0, 1, 2}, std::array<int, 3>{0, 2, 3}}) {
     bytes += raw<std::int16_t>(-7, big);
     bytes += count_type == "uchar" ? raw<std::uint8_t>(3, big) : raw<std::uint32_t>(3, big);
@@ -176,11 +177,13 @@ TEST(PolygonSoup, PlyOfEveryTypeAndWithOtherElementsAndProperties) {
 }
 
 TEST(PolygonSoup, PlyStripsAndFacesBeforeVertices) {
-  const PolygonSoup strips = read("ply\nformat ascii 1.0\n" + ply_vertices +
-                                      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 3 2 1\n",
-                                  MeshFormat::Ply);
+  const PolygonSoup strips =
+      read("ply\nformat ascii 1.0\n" + ply_vertices +
+               "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 3 2 1\n",
+           MeshFormat::Ply);
   EXPECT_EQ(strips.indices, (std::vector<std::int32_t>{0, 1, 2, 2, 1, 3, 3, 2, 1}));
-  expect_square(read("ply\nformat ascii 1.0\n" + ply_faces + ply_vertices + "end_header\n3 0 1 2\n3 0 2 3\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n", MeshFormat::Ply));
+  expect_square(
+      read("ply\nformat ascii 1.0\n" + ply_faces + ply_vertices + "end_header\n3 0 1 2\n3 0 2 3\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n", MeshFormat::Ply));
 }
 
 TEST(PolygonSoup, PlyRefusals) {
@@ -225,10 +228,9 @@ TEST(PolygonSoup, RefusesImpossibleCountsAtOnce) {
 
 TEST(PolygonSoup, ObjForms) {
   const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-  for (const std::string faces :
-       {"f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", "f 1//1 2//2 3//3\nf 1//1 3//3 4//4\n", "f 1/1/1 2/2/2 3/3/3\nf 1/ 3/ 4/\n", "f -4 -3 -2\nf -4 -2 -1\n",
-        "f\t1\t2\t3\nf 1  3 \t4 \n", "f 1 2 \\\n 3\nf 1 3 \\\r\n4", "l 1 2\np 1\nusemtl a\nf 1 2 3 # comment \\\nf 1 3 4", "g x\ns off\nf 1 2\nf 1 2 3\nf +1 3 4",
-        "fo 1 2 3\nf 1 3 4"})
+  for (const std::string faces : {"f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n", "f 1//1 2//2 3//3\nf 1//1 3//3 4//4\n", "f 1/1/1 2/2/2 3/3/3\nf 1/ 3/ 4/\n",
+                                  "f -4 -3 -2\nf -4 -2 -1\n", "f\t1\t2\t3\nf 1  3 \t4 \n", "f 1 2 \\\n 3\nf 1 3 \\\r\n4",
+                                  "l 1 2\np 1\nusemtl a\nf 1 2 3 # comment \\\nf 1 3 4", "g x\ns off\nf 1 2\nf 1 2 3\nf +1 3 4", "fo 1 2 3\nf 1 3 4"})
     expect_square(read(points + faces, MeshFormat::Obj));
   expect_square(read("\xef\xbb\xbfv 0 0 0 1.0\nv\t1 0 0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\r\nf 1 2 3\rf 1 3 4", MeshFormat::Obj));
   expect_square(read("f 1 2 3\nf 1 3 4\n" + points, MeshFormat::Obj));  // forward references
@@ -247,8 +249,10 @@ TEST(PolygonSoup, ObjForms) {
 
 TEST(PolygonSoup, OffForms) {
   const std::string body = "4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
-  for (const std::string head : {"OFF\n", "OFF ", "", "# comment\nOFF # more\n\n", "COFF\n", "STCNOFF\n", "NOFF\n"}) expect_square(read(head + body, MeshFormat::Off));
-  expect_square(read("COFF\n4 2 5\n0 0 0 255 0 0 255\n1 0 0 1 0 0\n\n# between\n1 1 0 9\n0 1 0 # x\n3 0 1 2 255 0 0\n3 0 2 3 0.1 0.2 0.3 1.0\n", MeshFormat::Off));
+  for (const std::string head : {"OFF\n", "OFF ", "", "# comment\nOFF # more\n\n", "COFF\n", "STCNOFF\n", "NOFF\n"})
+    expect_square(read(head + body, MeshFormat::Off));
+  expect_square(read("COFF\n4 2 5\n0 0 0 255 0 0 255\n1 0 0 1 0 0\n\n# between\n1 1 0 9\n0 1 0 # x\n3 0 1 2 255 0 0\n3 0 2 3 0.1 0.2 0.3 1.0\n",
+                     MeshFormat::Off));
   expect_square(read("OFF\n4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n", MeshFormat::Off));
   says("OFF BINARY\n", MeshFormat::Off, "binary");
   says("4OFF\n" + body, MeshFormat::Off, "not supported");
@@ -264,7 +268,8 @@ TEST(PolygonSoup, StlForms) {
   std::string upper = ascii_stl;
   std::transform(upper.begin(), upper.end(), upper.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
   expect_square(read(upper, MeshFormat::Stl));
-  expect_square(read("solid\n" + facet("0 0 0", "1 0 0", "1 1 0") + "endsolid\nsolid vertex facet\n" + facet("-0 0 0", "1 1 0", "0 1 0") + "endsolid", MeshFormat::Stl));
+  expect_square(read("solid\n" + facet("0 0 0", "1 0 0", "1 1 0") + "endsolid\nsolid vertex facet\n" + facet("-0 0 0", "1 1 0", "0 1 0") + "endsolid",
+                     MeshFormat::Stl));
   expect_square(read(binary_stl() + "a tail", MeshFormat::Stl));
   says(binary_stl().substr(0, 140), MeshFormat::Stl, "promises 2 facets");
   says("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", MeshFormat::Stl, "three coordinates");
@@ -275,9 +280,14 @@ TEST(PolygonSoup, StlForms) {
 }
 
 TEST(PolygonSoup, TruncatedFilesReadOrThrow) {
-  const std::vector<std::pair<std::string, MeshFormat>> files{
-      {ascii_ply, MeshFormat::Ply}, {binary_ply(false), MeshFormat::Ply}, {binary_ply(true), MeshFormat::Ply}, {ply_of_type<double>("double", "uint", false), MeshFormat::Ply},
-      {obj, MeshFormat::Obj},       {off, MeshFormat::Off},               {ascii_stl, MeshFormat::Stl},        {binary_stl(), MeshFormat::Stl}};
+  const std::vector<std::pair<std::string, MeshFormat>> files{{ascii_ply, MeshFormat::Ply},
+                                                              {binary_ply(false), MeshFormat::Ply},
+                                                              {binary_ply(true), MeshFormat::Ply},
+                                                              {ply_of_type<double>("double", "uint", false), MeshFormat::Ply},
+                                                              {obj, MeshFormat::Obj},
+                                                              {off, MeshFormat::Off},
+                                                              {ascii_stl, MeshFormat::Stl},
+                                                              {binary_stl(), MeshFormat::Stl}};
   for (const auto& [bytes, format] : files) {
     std::size_t accepted = 0;
     for (std::size_t n = 0; n <= bytes.size(); ++n) {
@@ -299,8 +309,9 @@ TEST(PolygonSoup, TruncatedFilesReadOrThrow) {
 }
 
 TEST(PolygonSoup, DamagedFilesReadOrThrow) {
-  const std::vector<std::pair<std::string, MeshFormat>> files{{ascii_ply, MeshFormat::Ply}, {binary_ply(false), MeshFormat::Ply}, {obj, MeshFormat::Obj},
-                                                              {off, MeshFormat::Off},       {ascii_stl, MeshFormat::Stl},         {binary_stl(), MeshFormat::Stl}};
+  const std::vector<std::pair<std::string, MeshFormat>> files{{ascii_ply, MeshFormat::Ply}, {binary_ply(false), MeshFormat::Ply},
+                                                              {obj, MeshFormat::Obj},       {off, MeshFormat::Off},
+                                                              {ascii_stl, MeshFormat::Stl}, {binary_stl(), MeshFormat::Stl}};
   TestRandom random(1);
   for (const auto& [bytes, format] : files)
     for (int round = 0; round < 2000; ++round) {
@@ -334,8 +345,13 @@ TEST(PolygonSoup, ExtensionsOfAnyCase) {
   Folder folder;
   std::ofstream(folder.file("square.OBJ")) << obj;
   expect_square(read_polygon_soup(folder.file("square.OBJ")));
-  std::ofstream(folder.file("qu\xc3\xa4" "drat.Ply")) << ascii_ply;
-  expect_square(read_polygon_soup(folder.file("qu\xc3\xa4" "drat.Ply")));
+  std::ofstream(
+      folder.file("qu\xc3\xa4"
+                  "drat.Ply"))
+      << ascii_ply;
+  expect_square(
+      read_polygon_soup(folder.file("qu\xc3\xa4"
+                                    "drat.Ply")));
 }
 
 TEST(PolygonSoup, WritesWhatItReads) {

@@ -12,7 +12,8 @@ namespace {
 TriangleSurface surface_of(const PolygonSoup& soup) {
   TriangleSurface surface;
   surface.points = soup.points;
-  for (std::size_t f = 0; f < soup.polygon_count(); ++f) surface.faces.push_back({soup.indices[3 * f], soup.indices[3 * f + 1], soup.indices[3 * f + 2]});
+  for (std::size_t f = 0; f < soup.polygon_count(); ++f)
+    surface.faces.push_back({soup.indices[3 * f], soup.indices[3 * f + 1], soup.indices[3 * f + 2]});
   return surface;
 }
 

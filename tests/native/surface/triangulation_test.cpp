@@ -25,8 +25,7 @@ void expect_covered(const PolygonSoup& soup, bool allow_no_area = false) {
   const Triangulation t = triangulate(soup);
   ASSERT_EQ(t.triangles.size(), soup.points.size() - 2);
   Vec3 whole = Vec3::Zero();
-  for (std::size_t i = 0; i + 1 < soup.points.size(); ++i)
-    whole += (soup.points[i] - soup.points[0]).cross(soup.points[i + 1] - soup.points[0]) / 2;
+  for (std::size_t i = 0; i + 1 < soup.points.size(); ++i) whole += (soup.points[i] - soup.points[0]).cross(soup.points[i + 1] - soup.points[0]) / 2;
   double sum = 0;
   for (const auto& f : t.triangles) {
     const Vec3 n = (soup.points[f[1]] - soup.points[f[0]]).cross(soup.points[f[2]] - soup.points[f[0]]) / 2;
