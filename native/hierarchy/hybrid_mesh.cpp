@@ -525,7 +525,7 @@ void HybridMesh::activate() {
 
 // --- maps ------------------------------------------------------------------------------------------------------------------------------------------
 
-void HybridMesh::set_map(int node, PatchMap map) {
+void HybridMesh::set_map(int node, std::shared_ptr<const PatchMap> map) {
   auto slot = std::make_shared<const MapSlot>(std::move(map));
   if (nodes_[node].map >= 0) {
     maps_[nodes_[node].map] = std::move(slot);
@@ -535,7 +535,9 @@ void HybridMesh::set_map(int node, PatchMap map) {
   }
 }
 
-const PatchMap* HybridMesh::map(int node) const { return nodes_[node].map < 0 ? nullptr : &maps_[nodes_[node].map]->map; }
+std::shared_ptr<const PatchMap> HybridMesh::shared_map(int node) const { return nodes_[node].map < 0 ? nullptr : maps_[nodes_[node].map]->map; }
+
+const PatchMap* HybridMesh::map(int node) const { return shared_map(node).get(); }
 
 const PatchSampler* HybridMesh::sampler(int node) const { return nodes_[node].map < 0 ? nullptr : &maps_[nodes_[node].map]->sampler; }
 

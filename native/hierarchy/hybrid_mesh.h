@@ -201,8 +201,10 @@ class HybridMesh {
   std::vector<bool> enabled() const;
 
   // --- maps ---------------------------------------------------------------------------------------------------------------------------------
-  void set_map(int node, PatchMap map);
+  void set_map(int node, PatchMap map) { set_map(node, std::make_shared<const PatchMap>(std::move(map))); }
+  void set_map(int node, std::shared_ptr<const PatchMap> map);
   const PatchMap* map(int node) const;  // the node's own, or null
+  std::shared_ptr<const PatchMap> shared_map(int node) const;
   const PatchSampler* sampler(int node) const;
   int map_owner(int node) const;  // nearest self-or-ancestor that has one, or -1
   void drop_map(int node);
@@ -252,8 +254,8 @@ class HybridMesh {
     std::int8_t level = 0;
   };
   struct MapSlot {
-    explicit MapSlot(PatchMap m) : map(std::move(m)), sampler(map) {}
-    PatchMap map;
+    explicit MapSlot(std::shared_ptr<const PatchMap> m) : map(std::move(m)), sampler(*map) {}
+    std::shared_ptr<const PatchMap> map;
     PatchSampler sampler;
   };
   // Sorted by vertex.

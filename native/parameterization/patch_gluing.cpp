@@ -26,62 +26,103 @@ std::vector<int> side_chain(const PatchMap& map, int side) {
   return chain;
 }
 
+// The maps' points, triangles and sides, joined; the sources are left to the caller.
+class Gluing {
+ public:
+  Gluing(const std::vector<PatchMap>& maps, const QuadGraph& graph) : maps_(maps), graph_(graph), offset_(maps.size() + 1, 0), chains_(maps.size()) {
+    for (std::size_t q = 0; q < maps.size(); ++q) offset_[q + 1] = offset_[q] + static_cast<int>(maps[q].uv.size());
+  }
+
+  MappedSurface run() {
+    find_chains();
+    const std::vector<int> point = join_points();
+    MappedSurface out;
+    PatchedSurface& surface = out.surface;
+    static_cast<QuadGraph&>(surface) = graph_;
+    surface.mesh.points = std::move(points_);
+    for (std::size_t q = 0; q < maps_.size(); ++q)
+      for (const std::array<int, 3>& corners : maps_[q].triangles) {
+        std::array<int, 3> face;
+        std::array<Vec2, 3> uv;
+        for (int i = 0; i < 3; ++i) {
+          face[i] = point[offset_[q] + corners[i]];
+          uv[i] = maps_[q].uv[corners[i]];
+        }
+        surface.mesh.faces.push_back(face);
+        surface.patch.push_back(static_cast<int>(q));
+        out.corners.push_back(uv);
+      }
+    connect_half_edges(surface.mesh);
+    surface.sides.resize(maps_.size());
+    for (std::size_t q = 0; q < maps_.size(); ++q)
+      for (int i = 0; i < 4; ++i)
+        for (const int v : chains_[q][i]) surface.sides[q][i].push_back(point[v]);
+    return out;
+  }
+
+ private:
+  void find_chains() {
+    for (std::size_t q = 0; q < maps_.size(); ++q)
+      for (int i = 0; i < 4; ++i) {
+        chains_[q][i] = side_chain(maps_[q], i);
+        for (int& v : chains_[q][i]) v += offset_[q];
+      }
+  }
+
+  // Per vertex of a map, in their order, its point.
+  std::vector<int> join_points() {
+    std::vector<int> parent(offset_.back());
+    std::iota(parent.begin(), parent.end(), 0);
+    for (std::size_t q = 0; q < maps_.size(); ++q)
+      for (int i = 0; i < 4; ++i) {
+        const PatchSide other = graph_.neighbours[q][i];
+        if (other.patch < 0) continue;
+        const std::vector<int>&a = chains_[q][i], &b = chains_[other.patch][other.side];
+        if (a.size() != b.size()) throw Error(ErrorCode::Internal, "the maps of two neighbouring patches do not share their side");
+        for (std::size_t k = 0; k < a.size(); ++k) {
+          const int x = find(parent, a[k]), y = find(parent, b[b.size() - 1 - k]);
+          parent[std::max(x, y)] = std::min(x, y);
+        }
+      }
+    std::vector<int> point(offset_.back(), -1);
+    for (std::size_t q = 0; q < maps_.size(); ++q)
+      for (int v = offset_[q]; v < offset_[q + 1]; ++v) {
+        const int root = find(parent, v);
+        if (point[root] < 0) {
+          point[root] = static_cast<int>(points_.size());
+          points_.push_back(maps_[q].positions[v - offset_[q]]);
+        }
+        point[v] = point[root];
+      }
+    return point;
+  }
+
+  const std::vector<PatchMap>& maps_;
+  const QuadGraph& graph_;
+  std::vector<int> offset_;  // of a map's vertices among all
+  std::vector<std::array<std::vector<int>, 4>> chains_;
+  std::vector<Vec3> points_;
+};
+
 }  // namespace
 
-MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const PatchedSurface& layout,
-                              const std::vector<std::array<int, 3>>& repaired_faces) {
-  const int patches = static_cast<int>(maps.size());
-  std::vector<int> offset(patches + 1, 0);
-  for (int q = 0; q < patches; ++q) offset[q + 1] = offset[q] + static_cast<int>(maps[q].uv.size());
-  std::vector<int> parent(offset.back());
-  std::iota(parent.begin(), parent.end(), 0);
-  std::vector<std::array<std::vector<int>, 4>> chains(patches);
-  for (int q = 0; q < patches; ++q)
-    for (int i = 0; i < 4; ++i) {
-      chains[q][i] = side_chain(maps[q], i);
-      for (int& v : chains[q][i]) v += offset[q];
-    }
-  for (int q = 0; q < patches; ++q)
-    for (int i = 0; i < 4; ++i) {
-      const PatchSide other = layout.neighbours[q][i];
-      if (other.patch < 0) continue;
-      const std::vector<int>&a = chains[q][i], &b = chains[other.patch][other.side];
-      if (a.size() != b.size()) throw Error(ErrorCode::Internal, "the maps of two neighbouring patches do not share their side");
-      for (std::size_t k = 0; k < a.size(); ++k) {
-        const int x = find(parent, a[k]), y = find(parent, b[b.size() - 1 - k]);
-        parent[std::max(x, y)] = std::min(x, y);
-      }
-    }
-  MappedSurface out;
-  TriangleSurface& mesh = out.surface.mesh;
-  std::vector<int> point(offset.back(), -1);
-  for (int q = 0; q < patches; ++q)
-    for (int v = offset[q]; v < offset[q + 1]; ++v) {
-      const int root = find(parent, v);
-      if (point[root] < 0) {
-        point[root] = static_cast<int>(mesh.points.size());
-        mesh.points.push_back(maps[q].positions[v - offset[q]]);
-      }
-      point[v] = point[root];
-    }
-  out.surface.source.resize(mesh.points.size());
-  std::vector<char> known(mesh.points.size(), 0);
-  for (int q = 0; q < patches; ++q)
-    for (std::size_t t = 0; t < maps[q].triangles.size(); ++t) {
-      const std::array<int, 3>& corners = maps[q].triangles[t];
-      const std::array<int, 3>& source = repaired_faces[maps[q].source_face[t]];
-      std::array<int, 3> face;
-      std::array<Vec2, 3> uv;
+MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph, const std::vector<std::array<int, 3>>& repaired_faces) {
+  MappedSurface out = Gluing(maps, graph).run();
+  out.surface.source.resize(out.surface.mesh.points.size());
+  std::vector<char> known(out.surface.mesh.points.size(), 0);
+  std::size_t face = 0;
+  for (const PatchMap& map : maps)
+    for (std::size_t t = 0; t < map.triangles.size(); ++t, ++face) {
+      const std::array<int, 3>& source = repaired_faces[map.source_face[t]];
       for (int i = 0; i < 3; ++i) {
-        face[i] = point[offset[q] + corners[i]];
-        uv[i] = maps[q].uv[corners[i]];
-        if (known[face[i]]) continue;
-        known[face[i]] = 1;
-        PointSource& s = out.surface.source[face[i]];
+        const int v = out.surface.mesh.faces[face][i];
+        if (known[v]) continue;
+        known[v] = 1;
+        PointSource& s = out.surface.source[v];
         double sum = 0;
         int n = 0;
         for (int k = 0; k < 3; ++k) {
-          const double w = maps[q].source[t][3 * i + k];
+          const double w = map.source[t][3 * i + k];
           if (!(w > 0)) continue;
           s.vertices[n] = source[k];
           s.weights[n++] = w;
@@ -89,20 +130,38 @@ MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const PatchedSu
         }
         for (double& w : s.weights) w /= sum;
       }
-      mesh.faces.push_back(face);
-      mesh.source_face.push_back(maps[q].source_face[t]);
-      out.surface.patch.push_back(q);
-      out.corners.push_back(uv);
+      out.surface.mesh.source_face.push_back(map.source_face[t]);
     }
-  connect_half_edges(mesh);
-  out.surface.nodes = layout.nodes;
-  out.surface.neighbours = layout.neighbours;
-  out.surface.node_count = layout.node_count;
-  out.surface.sides.resize(patches);
-  for (int q = 0; q < patches; ++q)
-    for (int i = 0; i < 4; ++i)
-      for (const int v : chains[q][i]) out.surface.sides[q][i].push_back(point[v]);
   return out;
+}
+
+GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph) {
+  GluedMaps out;
+  out.mapped = Gluing(maps, graph).run();
+  PatchedSurface& surface = out.mapped.surface;
+  for (std::size_t v = 0; v < surface.mesh.points.size(); ++v) surface.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
+  for (std::size_t f = 0; f < surface.mesh.faces.size(); ++f) surface.mesh.source_face.push_back(static_cast<int>(f));
+  for (const PatchMap& map : maps) {
+    out.source_face.insert(out.source_face.end(), map.source_face.begin(), map.source_face.end());
+    out.source.insert(out.source.end(), map.source.begin(), map.source.end());
+  }
+  return out;
+}
+
+void GluedMaps::trace(PatchMap& map) const {
+  for (std::size_t t = 0; t < map.triangles.size(); ++t) {
+    const int face = map.source_face[t];
+    const std::array<float, 9>& corner = source[face];
+    std::array<float, 9> traced{};
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < 3; ++i) {
+        double w = 0;
+        for (int k = 0; k < 3; ++k) w += static_cast<double>(map.source[t][3 * c + k]) * corner[3 * k + i];
+        traced[3 * c + i] = static_cast<float>(w);
+      }
+    map.source[t] = traced;
+    map.source_face[t] = source_face[face];
+  }
 }
 
 }  // namespace hybrid_mesh

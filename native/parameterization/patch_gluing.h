@@ -15,9 +15,20 @@ struct MappedSurface {
   std::vector<std::array<Vec2, 3>> corners;
 };
 
-// The inverse of extracting: joins maps of patches along their sides to one surface. `layout` gives the patches' nodes and neighbours; the maps share
-// the points along common sides. `repaired_faces` are the faces that the maps name as their source. Throws Error{Internal} if two maps do not meet
-// along a side.
-MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const PatchedSurface& layout, const std::vector<std::array<int, 3>>& repaired_faces);
+// The inverse of extracting: joins maps of patches along their sides to one surface. `graph`: of the patches, one a map; the maps share the points
+// along common sides. `repaired_faces` are the faces that the maps name as their source. Throws Error{Internal} if two maps do not meet along a side.
+MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph, const std::vector<std::array<int, 3>>& repaired_faces);
+
+// The same without the faces that the maps name: the surface is its own source, point by point and face by face.
+struct GluedMaps {
+  MappedSurface mapped;
+  // Per face where it lies on the surface that the maps name: as PatchMap has it.
+  std::vector<int> source_face;
+  std::vector<std::array<float, 9>> source;
+
+  // Makes a map's sources, given in faces of `mapped`, name faces of the surface that the glued maps named.
+  void trace(PatchMap& map) const;
+};
+GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph);
 
 }  // namespace hybrid_mesh

@@ -43,36 +43,7 @@ void split_inner_edge(TriangleSurface& mesh, std::vector<PointSource>& source, i
 }
 
 PatchedSurface quadrisected(PatchedSurface surface) {
-  const int old_count = surface.patch_count();
-  std::vector<std::array<int, 4>> middle(old_count);
-  for (int q = 0; q < old_count; ++q)
-    for (int i = 0; i < 4; ++i) {
-      const PatchSide other = surface.neighbours[q][i];
-      const bool known = other.patch >= 0 && (other.patch < q || (other.patch == q && other.side < i));
-      middle[q][i] = known ? middle[other.patch][other.side] : surface.node_count++;
-    }
-  std::vector<std::array<int, 4>> nodes(4 * old_count);
-  std::vector<std::array<PatchSide, 4>> neighbours(4 * old_count);
-  for (int q = 0; q < old_count; ++q) {
-    const int centre = surface.node_count++;
-    for (int i = 0; i < 4; ++i) {
-      const int before = (i + 3) % 4, after = (i + 1) % 4;
-      const int child = 4 * q + i;
-      // Corner i is the patch's own; then counter-clockwise along side i, the centre, and back along the side before.
-      nodes[child][i] = surface.nodes[q][i];
-      nodes[child][after] = middle[q][i];
-      nodes[child][(i + 2) % 4] = centre;
-      nodes[child][before] = middle[q][before];
-      neighbours[child][after] = {4 * q + after, before};
-      neighbours[child][(i + 2) % 4] = {4 * q + before, i};
-      // On side i the quadrant has the first half, on the side before it the second.
-      const PatchSide first = surface.neighbours[q][i], second = surface.neighbours[q][before];
-      neighbours[child][i] = first.patch < 0 ? PatchSide{} : PatchSide{4 * first.patch + (first.side + 1) % 4, first.side};
-      neighbours[child][before] = second.patch < 0 ? PatchSide{} : PatchSide{4 * second.patch + second.side, second.side};
-    }
-  }
-  surface.nodes = std::move(nodes);
-  surface.neighbours = std::move(neighbours);
+  static_cast<QuadGraph&>(surface) = quadrisected(surface.graph());
   surface.patch.clear();
   surface.sides.clear();
   return surface;

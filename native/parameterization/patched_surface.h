@@ -4,15 +4,10 @@
 #include <array>
 #include <vector>
 
+#include "parameterization/quad_graph.h"
 #include "surface/triangle_surface.h"
 
 namespace hybrid_mesh {
-
-// A patch and one of its four sides; patch -1: none.
-struct PatchSide {
-  int patch = -1;
-  int side = 0;
-};
 
 // A point of the repaired surface as a combination of one, two or three of its points (the corners of a face); unused ones are -1 with weight 0.
 struct PointSource {
@@ -40,21 +35,17 @@ void split_inner_edge(TriangleSurface& mesh, std::vector<PointSource>& source, i
 
 // A surface cut into disk-shaped quadrilateral patches along its own edges. It covers the repaired surface exactly: each face lies on one face of
 // that.
-struct PatchedSurface {
+struct PatchedSurface : QuadGraph {
   TriangleSurface mesh;                                // source_face: face of the repaired surface
   std::vector<PointSource> source;                     // per point
   std::vector<int> patch;                              // per face
-  std::vector<std::array<int, 4>> nodes;               // per patch: base nodes, counter-clockwise
-  std::vector<std::array<PatchSide, 4>> neighbours;    // per patch and side
   std::vector<std::array<std::vector<int>, 4>> sides;  // per patch and side: the points along it, both ends included
-  int node_count = 0;
 
-  int patch_count() const { return static_cast<int>(nodes.size()); }
+  const QuadGraph& graph() const { return *this; }
 };
 
-// The layout of the patches' quadrants: patch q becomes 4 q .. 4 q + 3, the quadrants (0, 0), (1, 0), (1, 1), (0, 1) of its square, and keeps its
-// nodes' names. Points and faces are left as they are, `patch` and `sides` empty: the surface is cut anew where a map says (ChartMesh::quadrisect(),
-// extract_patch_maps()).
+// The surface with the graph of its patches' quadrants. Points and faces are left as they are, `patch` and `sides` empty: it is cut anew where a map
+// says (ChartMesh::quadrisect(), extract_patch_maps()).
 PatchedSurface quadrisected(PatchedSurface surface);
 
 // A part of a patched surface made of some of its patches. Patches are numbered in the order given; points and nodes where the part merely touches

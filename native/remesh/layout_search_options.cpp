@@ -18,8 +18,8 @@ constexpr int kTowerLevel = 2;
 double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
 
 // A level that is passed through: quadrisected, on so many vertices a quad.
-LayoutSearchOptions plain_level(double quads, double vertices) {
-  LayoutSearchOptions level;
+LevelSearchOptions plain_level(double quads, double vertices) {
+  LevelSearchOptions level;
   level.map.vertices_a_quad = std::max(15.0, 1000 / quads);
   level.vertices = std::max(1500.0, vertices * quads);
   level.rounds = 0;
@@ -36,23 +36,24 @@ double quads_for_budget(const Budget& budget, const TopologySummary& topology, d
 }
 
 void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology,
-               const BaseDomain& base, int attempt) {
+               const BaseDomain& base, const BaseRequest& request) {
   // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
+  LevelSearchOptions& first = search.levels.front();
   if (base.quads() < 20) {
-    search.rounds = 0;
-    search.map.vertices_a_quad = 1000.0 / base.quads();
+    first.rounds = 0;
+    first.map.vertices_a_quad = 1000.0 / base.quads();
   }
-  search.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, search.vertices);
+  first.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, first.vertices);
   // Only disks can be laid out anew, and where there are handles disks are a small part.
-  if (options.semi_regular || attempt >= 4 || topology.genus > topology.components) return;
+  if (options.semi_regular || !request.operations || topology.genus > topology.components) return;
   double quads = base.quads(), sides = base.boundary_sides();
-  while (quads < kEnoughQuads && static_cast<int>(search.finer.size()) != options.levels) {
+  while (quads < kEnoughQuads && static_cast<int>(search.levels.size()) - 1 != options.levels) {
     quads *= 4;
     sides *= 2;
-    search.finer.push_back(plain_level(quads, attempt == 1 ? 60 : sides > 0 ? 30 : 15));
+    search.levels.push_back(plain_level(quads, request.vertices_a_quad > 0 ? request.vertices_a_quad : sides > 0 ? 30 : 15));
   }
-  if (quads < kLeastQuads || search.finer.empty()) return;
-  LayoutSearchOptions& last = search.finer.back();
+  if (quads < kLeastQuads || search.levels.size() == 1) return;
+  LevelSearchOptions& last = search.levels.back();
   // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
   const double size = quads_for_budget(budget, topology, quads, sides);
   last.even_quads = size - kRoomForARing;
@@ -69,9 +70,9 @@ void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const 
 void grow_towers(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const BaseDomain& base) {
   if (options.semi_regular || options.base == BaseSize::Given || options.refinement != Refinement::Uniform || budget.levels <= kTowerLevel) return;
   const double cells = std::pow(4.0, kTowerLevel);
-  for (int j = 1; j <= kTowerLevel; ++j) search.finer.push_back(plain_level(base.quads() * std::pow(4.0, j), 30));
+  for (int j = 1; j <= kTowerLevel; ++j) search.levels.push_back(plain_level(base.quads() * std::pow(4.0, j), 30));
   search.stretch = options.stretch_threshold;
-  LayoutSearchOptions& last = search.finer.back();
+  LevelSearchOptions& last = search.levels.back();
   last.threshold = excess_of_stretch(options.stretch_threshold);
   last.quads = static_cast<int>(cells * (budget.base_size - budget.boundary_side * base.boundary_sides()));
   last.rounds = 2;
@@ -81,12 +82,13 @@ void grow_towers(LayoutSearchOptions& search, const RemeshOptions& options, cons
 }  // namespace
 
 LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base,
-                                          int attempt) {
+                                          const BaseRequest& request) {
   LayoutSearchOptions search;
-  search.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
-  search.vertices = 30.0 * base.quads();
+  LevelSearchOptions& first = search.levels.emplace_back();
+  first.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
+  first.vertices = 30.0 * base.quads();
   if (options.base == BaseSize::Minimal)
-    grow_skin(search, options, budget, topology, base, attempt);
+    grow_skin(search, options, budget, topology, base, request);
   else
     grow_towers(search, options, budget, base);
   return search;

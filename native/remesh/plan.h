@@ -5,10 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "layout/base/base_domain.h"
 #include "layout/drawn/boundary_tower.h"
 #include "layout/drawn/layout_transfer.h"
-#include "layout/search/layout_search.h"
-#include "layout/search/region_repatch.h"
+#include "layout/operations/region_repatch.h"
+#include "layout/search/layout_script.h"
 #include "remesh/working_surface.h"
 
 namespace hybrid_mesh {
@@ -43,28 +44,6 @@ struct Plan {
   std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
   std::vector<Region> regions;
 };
-
-// The layout of a base domain and of its levels before and after a plan's operations, in which quads have addresses: the number of a root quad (those
-// of the base domain first, then every operation's in order), then for each level the number of the child, as in "12.0.3".
-class PlanLayout {
- public:
-  explicit PlanLayout(const PatchedSurface& base);
-
-  const PatchedSurface& layout() const { return layout_; }
-  const std::vector<std::string>& addresses() const { return address_; }  // per quad
-  int find(const std::string& address) const;                             // -1: none
-  void quadrisect();
-  void apply(const LayoutScript::Level& level);
-  void apply(std::vector<LayoutEdit> edits);  // of one round: named by the layout before them. Throws Error{Internal} where there are no such quads
-
- private:
-  PatchedSurface layout_;  // nodes and neighbours
-  std::vector<std::string> address_;
-  int roots_ = 0;
-};
-
-// A number that tells surfaces apart: of their points' coordinates and their faces.
-std::string fingerprint(const TriangleSurface& surface);
 
 // JSON text. Throws Error{InvalidInput}, with the place in the text, for what is no plan.
 std::string to_json(const Plan& plan);

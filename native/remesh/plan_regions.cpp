@@ -2,25 +2,29 @@
 #include "remesh/plan_regions.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
 
-#include "layout/search/region_repatch.h"
+#include "layout/operations/region_repatch.h"
 
 namespace hybrid_mesh {
 namespace {
 
+// The edits of regions belong to no round of a search: they come after all of these.
+constexpr int kAfterRounds = std::numeric_limits<int>::max();
+
 // Does the regions one after another.
 class RegionRepatcher {
  public:
-  RegionRepatcher(const TriangleSurface& surface, BaseMap& map, const Placement& placement, const Progress& progress)
-      : surface_(surface), map_(map), placement_(placement), progress_(progress), layout_(map.levels.front().layout) {}
+  RegionRepatcher(Construction& made, const Placement& placement, const Progress& progress)
+      : made_(made), placement_(placement), progress_(progress), finest_(made.level()) {}
 
-  RegionEdit operator()(const Plan::Region& region, std::size_t number) {
+  void operator()(const Plan::Region& region, std::size_t number) {
     const std::string place = "the plan's operations[" + std::to_string(number) + "]: ";
     try {
-      return repatch(region);
+      repatch(region);
     } catch (LayoutError& e) {
       for (LayoutProblem& p : e.problems)
         for (Vec3& w : p.where) w = placement_.from_unit(w);
@@ -34,21 +38,20 @@ class RegionRepatcher {
 
  private:
   int find(const std::string& address) const {
-    const int q = layout_.find(address);
-    if (q < 0) throw Error(ErrorCode::InvalidInput, "level " + std::to_string(level_) + " has no quad " + address);
+    const int q = made_.quads().find(address);
+    if (q < 0) throw Error(ErrorCode::InvalidInput, "level " + std::to_string(made_.level()) + " has no quad " + address);
     return q;
   }
 
-  RegionEdit repatch(const Plan::Region& region) {
-    if (const int finest = map_.levels.back().level; region.level < finest)
+  void repatch(const Plan::Region& region) {
+    if (region.level < finest_)
       throw Error(ErrorCode::InvalidInput,
-                  "level " + std::to_string(region.level) + " cannot be laid out anew: level " + std::to_string(finest) + " has operations already");
-    while (level_ < region.level) {
-      if (4 * static_cast<std::int64_t>(layout_.addresses().size()) > kMostPlanQuads)
+                  "level " + std::to_string(region.level) + " cannot be laid out anew: level " + std::to_string(finest_) + " has operations already");
+    while (made_.level() < region.level) {
+      if (4 * static_cast<std::int64_t>(made_.quads().graph().patch_count()) > kMostPlanQuads)
         throw Error(ErrorCode::InvalidInput,
                     "level " + std::to_string(region.level) + " would have more than " + std::to_string(kMostPlanQuads) + " quads");
-      layout_.quadrisect();
-      if (++level_ < static_cast<int>(map_.script.levels.size())) layout_.apply(map_.script.levels[level_]);
+      made_.refine();
     }
     RegionRepatch repatch;
     for (const std::string& address : region.quads) repatch.patches.push_back(find(address));
@@ -57,43 +60,24 @@ class RegionRepatcher {
     for (DrawnStroke& s : repatch.pattern.strokes)
       for (Vec3& p : s.points) p = placement_.to_unit(p);
     repatch.buffer_rings = region.buffer_rings;
-    LevelMap level = map_.levels.back();
-    const bool fresh = level.level < region.level;
-    for (; level.level < region.level; ++level.level) {
-      level.charts.quadrisect();
-      level.layout = quadrisected(std::move(level.layout));
-    }
-    if (fresh) level.changed.assign(level.layout.patch_count(), 0);
-    RegionEdit made{region.level, repatch_region(surface_, level, repatch, progress_)};
-    if (fresh)
-      map_.levels.push_back(std::move(level));
-    else
-      map_.levels.back() = std::move(level);
-    if (static_cast<int>(map_.edits.size()) <= region.level) map_.edits.resize(region.level + 1);
-    map_.edits[region.level].push_back(made.edit);
-    layout_.apply({made.edit});
-    return made;
+    made_.apply(repatch_region(made_.state(), repatch, progress_), kAfterRounds);
+    finest_ = made_.level();
   }
 
-  const TriangleSurface& surface_;
-  BaseMap& map_;
+  Construction& made_;
   const Placement& placement_;
   const Progress& progress_;
-  PlanLayout layout_;  // of the level at hand
-  int level_ = 0;
+  int finest_;  // level with operations
 };
 
 }  // namespace
 
-std::vector<RegionEdit> repatch_regions(const TriangleSurface& surface, BaseMap& map, const std::vector<Plan::Region>& regions,
-                                        const Placement& placement, const Progress& progress) {
+void repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement, const Progress& progress) {
   std::vector<std::size_t> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return regions[i].level < regions[j].level; });
-  std::vector<RegionEdit> made;
-  RegionRepatcher repatch(surface, map, placement, progress);
-  for (const std::size_t k : order) made.push_back(repatch(regions[k], k));
-  return made;
+  RegionRepatcher repatch(made, placement, progress);
+  for (const std::size_t k : order) repatch(regions[k], k);
 }
 
 }  // namespace hybrid_mesh

@@ -12,7 +12,7 @@ namespace hybrid_mesh {
 namespace {
 
 // Connected sets of patches, across sides.
-std::vector<std::vector<int>> components(const PatchedSurface& s, const PatchSet& in, char value) {
+std::vector<std::vector<int>> components(const QuadGraph& s, const PatchSet& in, char value) {
   std::vector<std::vector<int>> parts;
   std::vector<char> seen(s.patch_count(), 0);
   for (int first = 0; first < s.patch_count(); ++first) {
@@ -32,7 +32,7 @@ std::vector<std::vector<int>> components(const PatchedSurface& s, const PatchSet
 }
 
 // The loops of the surface's boundary: per node the number of its own, or -1.
-std::vector<int> loops_of_nodes(const PatchedSurface& s) {
+std::vector<int> loops_of_nodes(const QuadGraph& s) {
   std::vector<std::vector<int>> next(s.node_count);
   for (int q = 0; q < s.patch_count(); ++q)
     for (int i = 0; i < 4; ++i)
@@ -49,7 +49,7 @@ std::vector<int> loops_of_nodes(const PatchedSurface& s) {
 
 }  // namespace
 
-PatchSet dilated(const PatchedSurface& s, const PatchSet& in) {
+PatchSet dilated(const QuadGraph& s, const PatchSet& in) {
   std::vector<char> node(s.node_count, 0), out = in;
   for (int q = 0; q < s.patch_count(); ++q)
     if (in[q])
@@ -59,7 +59,7 @@ PatchSet dilated(const PatchedSurface& s, const PatchSet& in) {
   return out;
 }
 
-void open_to_loops(const PatchedSurface& s, PatchSet& in, const std::vector<double>& energy) {
+void open_to_loops(const QuadGraph& s, PatchSet& in, const std::vector<double>& energy) {
   const std::vector<int> loop = loops_of_nodes(s);
   const std::vector<std::vector<int>> outside = components(s, in, 0);
   if (outside.empty()) return;
@@ -98,7 +98,7 @@ void open_to_loops(const PatchedSurface& s, PatchSet& in, const std::vector<doub
   }
 }
 
-void part_at_nodes(const PatchedSurface& s, PatchSet& in) {
+void part_at_nodes(const QuadGraph& s, PatchSet& in) {
   std::vector<std::vector<int>> around(s.node_count);
   for (int q = 0; q < s.patch_count(); ++q)
     for (const int n : s.nodes[q]) around[n].push_back(q);
@@ -125,7 +125,7 @@ void part_at_nodes(const PatchedSurface& s, PatchSet& in) {
   }
 }
 
-std::vector<PatchRegion> disks_around(const PatchedSurface& s, const PatchSet& in) {
+std::vector<PatchRegion> disks_around(const QuadGraph& s, const PatchSet& in) {
   std::vector<PatchRegion> regions;
   std::vector<char> taken(s.patch_count(), 0);
   for (const std::vector<int>& seed : components(s, in, 1)) {

@@ -3,23 +3,23 @@
 
 #include <vector>
 
-#include "layout/regions/region_layout.h"
+#include "layout/layout_edit.h"
 
 namespace hybrid_mesh {
 
 using PatchSet = std::vector<char>;  // per patch of a surface whether it is in the set
 
 // Patches that share a node with one of the given, and the given.
-PatchSet dilated(const PatchedSurface& surface, const PatchSet& in);
+PatchSet dilated(const QuadGraph& graph, const PatchSet& in);
 
 // Takes out of a set the paths, those of least energy, that join the surface's boundary loops to what is not in the set: with a loop inside it would
 // be no disk. `energy`: of each patch.
-void open_to_loops(const PatchedSurface& surface, PatchSet& in, const std::vector<double>& energy);
+void open_to_loops(const QuadGraph& graph, PatchSet& in, const std::vector<double>& energy);
 
 // Takes out patches where the set merely touches itself at a node, the fewer ones there.
-void part_at_nodes(const PatchedSurface& surface, PatchSet& in);
+void part_at_nodes(const QuadGraph& graph, PatchSet& in);
 
 // Disks that hold the given patches, and more where these alone are none.
-std::vector<PatchRegion> disks_around(const PatchedSurface& surface, const PatchSet& in);
+std::vector<PatchRegion> disks_around(const QuadGraph& graph, const PatchSet& in);
 
 }  // namespace hybrid_mesh

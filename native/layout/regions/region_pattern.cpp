@@ -11,18 +11,18 @@
 namespace hybrid_mesh {
 namespace {
 
-std::vector<int> corner_of_node(const PatchedSurface& surface, const PatchRegion& region) {
-  std::vector<int> corner(surface.node_count, -1);
+std::vector<int> corner_of_node(const QuadGraph& graph, const PatchRegion& region) {
+  std::vector<int> corner(graph.node_count, -1);
   for (std::size_t k = 0; k < region.corners.size(); ++k) corner[region.corners[k]] = static_cast<int>(k);
   return corner;
 }
 
 // Quads of the region at each of its corners.
-std::vector<int> quads_inside(const PatchedSurface& surface, const PatchRegion& region) {
-  const std::vector<int> corner = corner_of_node(surface, region);
+std::vector<int> quads_inside(const QuadGraph& graph, const PatchRegion& region) {
+  const std::vector<int> corner = corner_of_node(graph, region);
   std::vector<int> count(region.corners.size(), 0);
   for (const int q : region.patches)
-    for (const int n : surface.nodes[q])
+    for (const int n : graph.nodes[q])
       if (corner[n] >= 0) ++count[corner[n]];
   return count;
 }
@@ -60,9 +60,9 @@ bool is_connected(const std::vector<std::array<int, 4>>& quads, const Sides& sid
 
 }  // namespace
 
-std::vector<int> regular_quads(const PatchedSurface& surface, const PatchRegion& region) {
-  const std::vector<int> valence = node_valences(surface), inside = quads_inside(surface, region);
-  const std::vector<char> on_boundary = boundary_nodes(surface);
+std::vector<int> regular_quads(const QuadGraph& graph, const PatchRegion& region) {
+  const std::vector<int> valence = node_valences(graph), inside = quads_inside(graph, region);
+  const std::vector<char> on_boundary = boundary_nodes(graph);
   std::vector<int> wanted;
   for (std::size_t k = 0; k < region.corners.size(); ++k) {
     const int node = region.corners[k];
@@ -71,21 +71,21 @@ std::vector<int> regular_quads(const PatchedSurface& surface, const PatchRegion&
   return wanted;
 }
 
-std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, const PatchRegion& region) {
+std::set<std::pair<int, int>> joined_outside(const QuadGraph& graph, const PatchRegion& region) {
   const int n = static_cast<int>(region.corners.size());
-  const std::vector<int> corner = corner_of_node(surface, region);
-  std::vector<char> inside(surface.patch_count(), 0);
+  const std::vector<int> corner = corner_of_node(graph, region);
+  std::vector<char> inside(graph.patch_count(), 0);
   for (const int q : region.patches) inside[q] = 1;
   std::set<std::pair<int, int>> joined;
-  for (int q = 0; q < surface.patch_count(); ++q)
+  for (int q = 0; q < graph.patch_count(); ++q)
     for (int i = 0; i < 4 && !inside[q]; ++i) {
-      const int a = corner[surface.nodes[q][i]], b = corner[surface.nodes[q][(i + 1) % 4]];
+      const int a = corner[graph.nodes[q][i]], b = corner[graph.nodes[q][(i + 1) % 4]];
       if (a >= 0 && b >= 0 && a != (b + 1) % n) joined.insert({{a, b}, {b, a}});
     }
   return joined;
 }
 
-LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region, const Progress& progress) {
+LayoutEdit automatic_edit(const QuadGraph& graph, const PatchRegion& region, const Progress& progress) {
   const auto edit_of = [&](DiskLayout filling) {
     LayoutEdit edit;
     edit.patches = region.patches;
@@ -94,10 +94,10 @@ LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& regi
     edit.inner_nodes = filling.inner_nodes;
     return edit;
   };
-  LayoutEdit edit = edit_of(fill_disk(regular_quads(surface, region), progress));
-  if (find_edit_defect(surface, region, edit).empty()) return edit;
+  LayoutEdit edit = edit_of(fill_disk(regular_quads(graph, region), progress));
+  if (find_edit_defect(graph, region, edit).empty()) return edit;
   LayoutEdit ringed = edit_of(fill_disk_with_ring(static_cast<int>(region.corners.size()), progress));
-  return find_edit_defect(surface, region, ringed).empty() ? ringed : edit;
+  return find_edit_defect(graph, region, ringed).empty() ? ringed : edit;
 }
 
 LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 4>> quads) {
@@ -149,16 +149,16 @@ std::string find_filling_defect(const std::vector<std::array<int, 4>>& quads, in
   return "";
 }
 
-std::string find_edit_defect(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit) {
-  const std::set<std::pair<int, int>> joined = joined_outside(surface, region);
+std::string find_edit_defect(const QuadGraph& graph, const PatchRegion& region, const LayoutEdit& edit) {
+  const std::set<std::pair<int, int>> joined = joined_outside(graph, region);
   for (const auto& quad : edit.quads)
     for (int i = 0; i < 4; ++i)
       if (joined.count({quad[i], quad[(i + 1) % 4]}))
         return "corners " + std::to_string(quad[i]) + " and " + std::to_string(quad[(i + 1) % 4]) +
                " would be joined inside the region, and are outside it already";
   const int n = static_cast<int>(region.corners.size());
-  const std::vector<int> valence = node_valences(surface), inside = quads_inside(surface, region);
-  const std::vector<char> on_boundary = boundary_nodes(surface);
+  const std::vector<int> valence = node_valences(graph), inside = quads_inside(graph, region);
+  const std::vector<char> on_boundary = boundary_nodes(graph);
   std::vector<int> around(n + edit.inner_nodes, 0);
   for (const auto& quad : edit.quads)
     for (const int k : quad) ++around[k];

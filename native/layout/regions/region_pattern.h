@@ -8,20 +8,20 @@
 #include <vector>
 
 #include "base/context.h"
-#include "layout/regions/region_layout.h"
+#include "layout/layout_edit.h"
 
 namespace hybrid_mesh {
 
 // How many quads of the region each of its corners must have to be regular, its quads outside being what they are; at least 1.
-std::vector<int> regular_quads(const PatchedSurface& surface, const PatchRegion& region);
+std::vector<int> regular_quads(const QuadGraph& graph, const PatchRegion& region);
 
 // Pairs of corners, each in both orders, that a side outside the region joins: joined inside it as well, they would be joined twice. The region's own
 // sides are left out.
-std::set<std::pair<int, int>> joined_outside(const PatchedSurface& surface, const PatchRegion& region);
+std::set<std::pair<int, int>> joined_outside(const QuadGraph& graph, const PatchRegion& region);
 
 // Quads that fill the region, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where they cannot.
 // Throws Error{InvalidInput} for an odd number of boundary sides.
-LayoutEdit automatic_edit(const PatchedSurface& surface, const PatchRegion& region, const Progress& progress);
+LayoutEdit automatic_edit(const QuadGraph& graph, const PatchRegion& region, const Progress& progress);
 
 // Given quads for the region, numbered as in LayoutEdit. Throws Error{InvalidInput} if they do not fill it.
 LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 4>> quads);
@@ -31,6 +31,6 @@ std::string find_filling_defect(const std::vector<std::array<int, 4>>& quads, in
 
 // Why the surface with the edit done would be no base to refine from: a node with too few or too many quads, or two nodes joined twice; empty if it
 // is one.
-std::string find_edit_defect(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit);
+std::string find_edit_defect(const QuadGraph& graph, const PatchRegion& region, const LayoutEdit& edit);
 
 }  // namespace hybrid_mesh

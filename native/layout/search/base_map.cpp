@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "layout/search/layout_replay.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_gluing.h"
 
@@ -29,49 +30,43 @@ ChartMesh smooth(const MappedSurface& mapped, GlobalMapOptions options, const Pr
 }
 
 // A base's layout that was found elsewhere, made anew on another version of the surface.
-LayoutSearchResult repeat_edits(CarriedMap map, const std::vector<LevelEdits>& edits, const GlobalMapOptions& options, const Progress& progress) {
+MappedLayouts repeat_base(CarriedMap map, const LayoutScript::Level& base, const GlobalMapOptions& options, const Progress& progress) {
   MappedSurface mapped{std::move(map.layout), {}};
   mapped.corners.resize(mapped.surface.mesh.faces.size());
-  for (const LayoutEdit& edit : edits[0]) apply_edit(mapped, edit);
+  for (const LayoutScript::Edit& of : base.edits) apply_edit(mapped, of.edit);
   mapped.corners = map_patches(mapped.surface, progress.part(0, 0.2));
   map.charts = smooth(mapped, options, progress.part(0.2, 1));
   map.layout = std::move(mapped.surface);
-  LayoutSearchResult result{{edits[0]}, {}, {}};
+  MappedLayouts result;
+  result.script.levels.push_back(base);
   result.stages.push_back({0, std::move(map)});
   return result;
 }
 
-BaseMap carried(LayoutSearchResult found, const GlobalMapOptions& options, const Progress& progress) {
+BaseMap carried(MappedLayouts found, const GlobalMapOptions& options, const Progress& progress) {
   BaseMap out;
-  for (LayoutSearchResult::Stage& stage : found.stages) {
+  for (MappedLayouts::Stage& stage : found.stages) {
     stage.map.carry(kInfinity, options, progress);
-    out.levels.push_back({stage.level, std::move(stage.map.layout), std::move(stage.map.charts), {}});
+    out.levels.push_back({stage.level, std::move(stage.map.layout), std::move(stage.map.charts)});
   }
-  out.edits = std::move(found.edits);
   out.script = std::move(found.script);
   return out;
 }
 
 // A coarse surface may be too coarse for the map: its triangles would have to bend. Then a finer one is taken, at last the surface itself. Where skin
 // is to be grown (`finer`), a base of more quads serves better: that is left to the caller.
-template <class Search>
+template <class Find>
 BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, bool finer, const GlobalMapOptions& options,
-                           const Progress& progress, const Search& search) {
-  std::vector<LevelEdits> edits;
-  LayoutScript script;
+                           const Progress& progress, const Find& find) {
+  LayoutScript script;  // what was found on a coarser surface
   for (const double factor : {1.0, 2.0, kInfinity}) {
     const double begin = factor == 1 ? 0 : 0.7;
     try {
       CarriedMap map(surface, base.cut(factor * vertices / base.quads(), progress.part(begin, begin + 0.05)));
-      const bool first = edits.empty();
       const Progress part = progress.part(begin + 0.05, begin == 0 ? 0.6 : 0.8);
-      LayoutSearchResult found = first ? search(std::move(map), part) : repeat_edits(std::move(map), edits, options, part);
-      edits = found.edits;
-      if (first) script = found.script;
-      script.levels.resize(edits.size());
-      BaseMap out = carried(std::move(found), options, progress.part(0.8, 1));
-      out.script = std::move(script);
-      return out;
+      MappedLayouts found = script.levels.empty() ? find(std::move(map), part) : repeat_base(std::move(map), script.levels[0], options, part);
+      script = found.script;
+      return carried(std::move(found), options, progress.part(0.8, 1));
     } catch (const Error& e) {
       if (e.code() != ErrorCode::Internal || factor == kInfinity || finer) throw;
     }
@@ -82,15 +77,15 @@ BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& bas
 }  // namespace
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
-  return map_coarse_to_fine(surface, base, options.vertices, !options.finer.empty() && options.stretch == 0, options.map, progress,
-                            [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
+  return map_coarse_to_fine(surface, base, options.levels[0].vertices, options.levels.size() > 1 && options.stretch == 0, options.levels[0].map,
+                            progress, [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
 }
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress) {
   GlobalMapOptions options;
   options.vertices_a_quad = script.levels.front().vertices_a_quad;
   return map_coarse_to_fine(surface, base, script.levels.front().vertices, false, options, progress,
-                            [&](CarriedMap map, const Progress& part) { return repeat_search(std::move(map), script, part); });
+                            [&](CarriedMap map, const Progress& part) { return replay_layout(std::move(map), script, part); });
 }
 
 BaseMap map_to_base(const TriangleSurface& surface, PatchedSurface base, const LayoutScript& script, const Progress& progress) {
@@ -101,7 +96,7 @@ BaseMap map_to_base(const TriangleSurface& surface, PatchedSurface base, const L
   cut.vertex.resize(surface.points.size());
   std::iota(cut.vertex.begin(), cut.vertex.end(), 0);
   cut.patches = std::move(base);
-  return carried(repeat_search(CarriedMap(surface, std::move(cut)), script, progress), GlobalMapOptions(), progress);
+  return carried(replay_layout(CarriedMap(surface, std::move(cut)), script, progress), GlobalMapOptions(), progress);
 }
 
 }  // namespace hybrid_mesh

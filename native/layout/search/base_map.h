@@ -11,12 +11,10 @@ struct LevelMap {
   int level = 0;
   PatchedSurface layout;  // nodes and neighbours; its points and faces are those of the charts and name those of the surface. Its sides are of no use
   ChartMesh charts;
-  std::vector<char> changed;  // per quad: whether its map is another one than that of the level before; empty: all are
 };
 
 struct BaseMap {
-  std::vector<LevelMap> levels;   // that of the base domain first
-  std::vector<LevelEdits> edits;  // see search_layout()
+  std::vector<LevelMap> levels;  // that of the base domain first
   LayoutScript script;
 };
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "layout/drawn/drawn_layout.h"
-#include "layout/search/base_map.h"
+#include "layout/level_state.h"
 
 namespace hybrid_mesh {
 
@@ -32,9 +32,8 @@ struct RegionRepatch {
 };
 
 // Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is
-// relaxed there and in the rings around. What lies farther off keeps its map exactly. `map`: that of the region's level over `surface`; it is
-// changed, and so is `map.changed`. Returns the edit. Throws LayoutError for curves that make no quads of the region, Error{InvalidInput} if the
-// quads are no disk or the pattern does not fit it, Error{Internal} if no map is found: then `map` is as it was.
-LayoutEdit repatch_region(const TriangleSurface& surface, LevelMap& map, const RegionRepatch& region, const Progress& progress);
+// relaxed there and in the rings around, at their cost alone. What lies farther off keeps its map exactly. Throws LayoutError for curves that make no
+// quads of the region, Error{InvalidInput} if the quads are no disk or the pattern does not fit it, Error{Internal} if no map is found.
+MappedEdit repatch_region(const LevelState& state, const RegionRepatch& region, const Progress& progress);
 
 }  // namespace hybrid_mesh

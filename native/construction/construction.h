@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "construction/addressed_graph.h"
+#include "hierarchy/hybrid_mesh.h"
+#include "layout/level_state.h"
+#include "layout/search/layout_script.h"
+
+namespace hybrid_mesh {
+
+// A hierarchy while it is made or edited, and the state of the level that operations act on, as one thing: an edit is applied once, to the state at
+// once and to the hierarchy with the level's other edits. Edits of one level that share quads are one irregular operation. What was done is kept:
+// addresses, reports and plans are read off it.
+class Construction {
+ public:
+  // `area`: of the surface that the quads are mapped to.
+  Construction(const QuadGraph& base, double area);
+  // A hierarchy with its maps and the state of one of its levels, which is refined to that level everywhere; `root_numbers`: of its root quads in
+  // addresses, by node. Throws Error{InvalidInput} if a finer level has operations or there is a quad without a map.
+  Construction(HybridMesh hierarchy, const std::vector<int>& root_numbers, int level);
+
+  int level() const { return level_; }
+  const AddressedGraph& quads() const { return quads_; }  // of the level, after its edits so far
+  LevelState state() const { return {quads_.graph(), maps_, area_}; }
+
+  // Edits of disjoint regions, all named by the quads before any of them; their quads' maps are left to set_map(). Throws Error{Internal} where there
+  // are no such quads.
+  void apply(std::vector<LayoutScript::Edit> round);
+  void apply(MappedEdit mapped, int round);
+  // Gives a quad of the level a map of its own.
+  void set_map(int patch, PatchMap map);
+
+  // Hands the level's edits and maps to the hierarchy. No edit of this level can follow. Throws Error{InvalidInput} if the hierarchy refuses an
+  // operation.
+  void close();
+  // close(), and on to the quadrants of all quads.
+  void refine();
+
+  // Once closed:
+  HybridMesh& hierarchy() { return mesh_; }
+  std::vector<int> root_numbers() const;  // per node: the number of a root quad in addresses, -1: no root
+  const std::vector<std::vector<LayoutScript::Edit>>& edits() const { return edits_; }  // per level, in order, with addresses
+
+ private:
+  struct Group {
+    std::vector<int> removed, added;  // nodes; patches
+  };
+  // A node of the quads: a vertex of the level, or a new one.
+  struct Vertex {
+    VertexId old;
+    int fresh = -1;
+  };
+
+  void begin_level();
+  LayoutChange change(const LayoutEdit& edit);
+  void insert(const Group& group, bool towers, std::vector<int>& nodes);
+  int find(int a);
+
+  HybridMesh mesh_;
+  int level_ = 0;
+  AddressedGraph quads_;
+  std::vector<QuadMap> maps_;  // per patch; without a map until one is set
+  double area_ = 0;
+  std::vector<std::vector<LayoutScript::Edit>> edits_;
+  std::vector<std::pair<int, int>> root_number_;  // node, number
+  bool closed_ = false;
+  // Of the level:
+  std::vector<int> nodes_;  // per patch of it as it began; once closed, as it is
+  std::vector<char> own_;   // per patch: has been given a map on this level
+  // Its edits, gathered to operations on disjoint sets of its quads:
+  std::vector<int> patches_;      // per patch: its number among all that there ever were on this level
+  std::vector<int> group_;        // per number: union-find of what belongs to one operation
+  std::vector<char> towers_;      // per number: its group grows skin and does nothing else
+  std::vector<Vertex> vertices_;  // per node of the quads
+  int fresh_ = 0;
+};
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "layout/layout_edit.h"
+#include "parameterization/map_clipping.h"
+
+namespace hybrid_mesh {
+
+// Where a quad's map is: its own, or the part over its square of the map of the nearest ancestor that has one.
+struct QuadMap {
+  std::shared_ptr<const PatchMap> map;
+  DyadicSquare square;
+};
+
+// The state of one level that operations act on: its quads, and where each lies on the surface. Copies share the maps.
+struct LevelState {
+  QuadGraph quads;
+  std::vector<QuadMap> maps;  // per quad
+  double area = 0;            // of the surface
+};
+
+// The next level, before any operation.
+LevelState quadrisected(const LevelState& state);
+
+// The maps of some quads. Throws Error{Internal} where rounding would fold one.
+std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads);
+
+// The quads of `part` alone, numbered in that order; nodes where the part merely touches itself are one.
+QuadGraph part_of(const QuadGraph& graph, const std::vector<int>& part);
+
+// An irregular operation that has been laid out and mapped, and waits to be applied.
+struct MappedEdit {
+  LayoutEdit edit;
+  std::vector<std::pair<int, PatchMap>> maps;  // of the new quads, and of those around that were smoothed with them: by their numbers after the edit
+  double energy_before = 0, energy_after = 0;  // of the maps of the region and of what was smoothed around it, beyond an isometry's, in quads
+};
+
+// Applies an edit to the quads and their maps.
+LayoutChange apply(LevelState& state, const MappedEdit& mapped);
+
+}  // namespace hybrid_mesh

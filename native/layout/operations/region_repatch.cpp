@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/operations/region_repatch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "layout/drawn/face_filling.h"
+#include "layout/regions/patch_sets.h"
+#include "layout/regions/region_layout.h"
+#include "layout/regions/region_pattern.h"
+#include "parameterization/global_map.h"
+#include "parameterization/initial_map.h"
+#include "parameterization/patch_energy.h"
+#include "parameterization/patch_extraction.h"
+#include "parameterization/patch_gluing.h"
+
+namespace hybrid_mesh {
+namespace {
+
+constexpr double kReach = 0.5;        // of the region's diagonal
+constexpr double kCornerReach = 0.4;  // of the mean length of the region's boundary sides
+constexpr double kSnap = 0.25;        // of the same: curves may run along the rim half a quad away from it
+
+double diagonal_of(const TriangleSurface& mesh) {
+  Vec3 low = mesh.points.front(), high = low;
+  for (const Vec3& p : mesh.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return (high - low).norm();
+}
+
+double mean_side(const std::vector<Vec3>& corners) {
+  double length = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    length += (corners[(k + 1) % corners.size()] - corners[k]).norm() / static_cast<double>(corners.size());
+  return length;
+}
+
+// Ends that are meant to be at corners of the region: those of a level lie off the surface, and curves are drawn to them.
+void snap_to_corners(std::vector<DrawnStroke>& strokes, const std::vector<Vec3>& corners) {
+  const double length = mean_side(corners);
+  for (DrawnStroke& s : strokes) {
+    if (s.points.size() < 2) continue;
+    for (Vec3* end : {&s.points.front(), &s.points.back()}) {
+      const Vec3 p = *end;
+      const auto nearest = std::min_element(corners.begin(), corners.end(),
+                                            [&](const Vec3& a, const Vec3& b) { return (a - p).squaredNorm() < (b - p).squaredNorm(); });
+      if ((*nearest - p).norm() < kCornerReach * length) *end = *nearest;
+    }
+  }
+}
+
+// A region within the part of the level that is worked on, whose first patches it is.
+struct LocalRegion {
+  const QuadGraph& level;
+  PatchRegion in_level;  // by the level's numbers
+  PatchRegion in_part;   // the same by those of the part: corner k is corner k
+};
+
+// An edit of the region by the part's numbers, by the level's.
+LayoutEdit in_level(LayoutEdit edit, const LocalRegion& region) {
+  edit.patches = region.in_level.patches;
+  edit.start = region.in_level.boundary[0];
+  return edit;
+}
+
+// The curves as an edit of the region, by the part's numbers.
+DrawnEdit draw(const PatchedSurface& surface, const LocalRegion& local, std::vector<DrawnStroke> strokes, const Progress& progress) {
+  const PatchRegion& region = local.in_part;
+  const PatchedPart part = part_of(surface, region.patches);
+  const TriangleSurface& disk = part.surface.mesh;
+  DrawnLayoutOptions options;
+  for (const PatchSide& s : region.boundary) options.boundary_nodes.push_back(part.surface.sides[s.patch][s.side].front());
+  std::vector<Vec3> corner;
+  for (const int v : options.boundary_nodes) corner.push_back(disk.points[v]);
+  snap_to_corners(strokes, corner);
+  // What is near is so by the size of the whole surface, as far as the region has room for it.
+  options.snap = std::clamp(std::min(DrawnLayoutOptions().snap, kSnap * mean_side(corner)) / std::max(diagonal_of(disk), 1e-9), 0.02, 0.12);
+  // Curves are drawn on a level, which is the farther from the surface the coarser it is.
+  options.reach = kReach;
+  DrawnLayout drawn = make_layout(disk, strokes, options, progress);
+  // The corners are the layout's first nodes, in their order: nodes have the numbers that an edit gives them.
+  const int corners = static_cast<int>(region.corners.size());
+  const FaceFillingOptions filling{regular_quads(local.level, local.in_level), joined_outside(local.level, local.in_level)};
+  DrawnEdit out;
+  out.piece = fill_faces(drawn, filling, progress);
+  if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
+  out.edit.patches = region.patches;
+  out.edit.start = region.boundary[0];
+  out.edit.inner_nodes = out.piece.node_count - corners;
+  out.edit.quads = out.piece.nodes;
+  return out;
+}
+
+// New quads that need no curves, by the level's numbers.
+LayoutEdit find_edit(const PatchedSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
+  const QuadGraph& level = local.level;
+  const PatchRegion& region = local.in_level;
+  LayoutEdit edit;
+  if (pattern.kind == RegionPattern::Kind::Automatic) {
+    edit = automatic_edit(level, region, progress);
+  } else if (pattern.kind == RegionPattern::Kind::Template) {
+    edit = template_edit(region, pattern.quads);
+  } else {
+    edit = tower_edit(level, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, local.in_part)));
+  }
+  if (const std::string defect = find_edit_defect(level, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
+  return edit;
+}
+
+// The given quads, and after them those in so many rings around.
+std::vector<int> with_rings(const QuadGraph& level, const std::vector<int>& patches, int rings) {
+  PatchSet in(level.patch_count(), 0);
+  for (const int q : patches) in[q] = 1;
+  PatchSet wide = in;
+  for (int ring = 0; ring < rings; ++ring) wide = dilated(level, wide);
+  std::vector<int> out = patches;
+  for (int q = 0; q < level.patch_count(); ++q)
+    if (wide[q] && !in[q]) out.push_back(q);
+  return out;
+}
+
+// Smooths the map of a part of the level, and holds its rim where the level goes on, so that the maps around still fit. Returns its energy beyond an
+// isometry's.
+double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<std::array<bool, 4>>& held, const Progress& progress) {
+  for (int q = 0; q < part.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (held[q][i])
+        for (const int v : part.sides[q][i]) charts.kind[v] = ChartMesh::Kind::Pinned;
+  GlobalMapOptions options;
+  options.corners_move = false;  // ends of the rim are among them
+  double area = 0;
+  for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
+  return (smooth_map(charts, part, options, progress).energy - 1) * area;
+}
+
+}  // namespace
+
+MappedEdit repatch_region(const LevelState& state, const RegionRepatch& repatch, const Progress& progress) {
+  const QuadGraph& level = state.quads;
+  std::optional<PatchRegion> region = make_region(level, repatch.patches, repatch.start);
+  if (!region)
+    throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
+  const std::vector<int> quads = with_rings(level, repatch.patches, repatch.buffer_rings);
+  const std::vector<PatchMap> maps = maps_of(state, quads);
+  const GluedMaps glued = glue_patch_maps(maps, part_of(level, quads));
+  MappedSurface part = glued.mapped;
+  progress(0.2);
+
+  // The region's quads are the part's first.
+  LocalRegion local{level, std::move(*region), {}};
+  std::vector<int> first(repatch.patches.size());
+  std::iota(first.begin(), first.end(), 0);
+  PatchSide start = local.in_level.boundary[0];
+  start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
+  local.in_part = *make_region(part.surface, first, start);
+
+  MappedEdit out;
+  const double scale = std::sqrt(static_cast<double>(level.patch_count()) / state.area);
+  for (const double e : patch_energies(part, scale, GlobalMapOptions().theta)) out.energy_before += e;
+  LayoutChange change;
+  if (repatch.pattern.kind == RegionPattern::Kind::Drawn) {
+    DrawnEdit edit = draw(part.surface, local, repatch.pattern.strokes, progress.part(0.2, 0.4));
+    out.edit = in_level(edit.edit, local);
+    change = apply_edit(part, std::move(edit));
+  } else {
+    LayoutEdit edit = out.edit = find_edit(part.surface, local, repatch.pattern, progress);
+    edit.patches = first;
+    edit.start = start;
+    change = apply_edit(part, edit);
+  }
+  map_patches(part.surface, change.added, part.corners, progress.part(0.4, 0.5));
+
+  // The numbers that the part's quads have in the level afterwards.
+  QuadGraph after = level;
+  const LayoutChange in_level = change_layout(after, out.edit);
+  std::vector<int> number(part.surface.patch_count(), -1);
+  for (std::size_t k = 0; k < quads.size(); ++k)
+    if (change.patch[k] >= 0) number[change.patch[k]] = in_level.patch[quads[k]];
+  for (std::size_t k = 0; k < change.added.size(); ++k) number[change.added[k]] = in_level.added[k];
+  std::vector<std::array<bool, 4>> held(number.size());
+  for (std::size_t q = 0; q < number.size(); ++q)
+    for (int i = 0; i < 4; ++i) held[q][i] = part.surface.neighbours[q][i].patch < 0 && after.neighbours[number[q]][i].patch >= 0;
+
+  ChartMesh charts(part.surface, part.corners);
+  charts.scale = scale;
+  out.energy_after = relax(charts, part.surface, held, progress.part(0.5, 0.8));
+  std::vector<PatchMap> relaxed = extract_patch_maps(charts, part.surface, glued.mapped.surface.mesh.faces, progress.part(0.8, 1));
+  for (std::size_t q = 0; q < relaxed.size(); ++q) {
+    if (const char* defect = find_map_defect(relaxed[q]); *defect)
+      throw Error(ErrorCode::Internal, std::string("the map of a quad of the region: ") + defect);
+    glued.trace(relaxed[q]);
+    out.maps.push_back({number[q], std::move(relaxed[q])});
+  }
+  return out;
+}
+
+}  // namespace hybrid_mesh

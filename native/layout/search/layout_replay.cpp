@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/search/layout_replay.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "layout/regions/region_pattern.h"
+#include "layout/search/even_regions.h"
+
+namespace hybrid_mesh {
+namespace {
+
+// Throws Error{Internal} for an edit that is none of this layout's: a script may have been made for another one.
+void require_fit(const QuadGraph& s, const LayoutEdit& edit) {
+  const auto fails = [] [[noreturn]] { throw Error(ErrorCode::Internal, "an edit does not fit its layout"); };
+  const std::set<int> patches(edit.patches.begin(), edit.patches.end());
+  if (patches.empty() || *patches.begin() < 0 || *patches.rbegin() >= s.patch_count() || !patches.count(edit.start.patch)) fails();
+  if (patches.count(s.neighbours[edit.start.patch][edit.start.side].patch)) fails();
+  const std::optional<PatchRegion> region = make_region(s, edit.patches, edit.start);
+  if (!region) fails();
+  const int corners = static_cast<int>(region->corners.size());
+  if (!find_filling_defect(edit.quads, corners).empty()) fails();
+  int nodes = corners;
+  for (const auto& quad : edit.quads) nodes = std::max(nodes, *std::max_element(quad.begin(), quad.end()) + 1);
+  if (nodes - corners != edit.inner_nodes || edit.rings < 0 || static_cast<std::int64_t>(corners) * edit.rings > edit.inner_nodes) fails();
+}
+
+// A region's even quads, along the same lines if this is the surface that they were found on; else along their outline, or, without one, where the
+// map puts them.
+DrawnEdit even_again(const MappedSurface& mapped, const LayoutScript::Edit& even, const Progress& progress) {
+  require_fit(mapped.surface, even.edit);
+  const std::optional<PatchRegion> region = make_region(mapped.surface, even.edit.patches, even.edit.start);
+  if (!region) throw Error(ErrorCode::Internal, "the quads of an operation are no disk");
+  std::optional<DrawnEdit> found = even.even_quads > 0 ? even_edit(mapped.surface, *region, even.even_quads, 1, progress) : std::nullopt;
+  if (found && found->edit.quads == even.edit.quads) return std::move(*found);
+  DrawnEdit edit{even.edit, {}};
+  if (!even.outline.nodes.empty()) edit.piece = lay_out_region(mapped, even.outline, *region, progress);
+  return edit;
+}
+
+void repeat_round(TrialMap& map, const std::vector<LayoutScript::Edit>& round, const GlobalMapOptions& options, const Progress& progress) {
+  map.begin(options.theta, progress);
+  if (round.front().even) {
+    std::vector<DrawnEdit> drawn;
+    for (const LayoutScript::Edit& even : round) drawn.push_back(even_again(map.mapped(), even, progress));
+    apply_drawn_edits(map, std::move(drawn), options, progress);
+  } else {
+    std::vector<LayoutEdit> edits;
+    for (const LayoutScript::Edit& of : round) {
+      require_fit(map.mapped().surface, of.edit);
+      edits.push_back(of.edit);
+    }
+    apply_edits(map, edits, options, progress);
+  }
+  map.keep();
+}
+
+}  // namespace
+
+MappedLayouts replay_layout(CarriedMap map, const LayoutScript& script, const Progress& progress) {
+  if (script.levels.empty()) throw Error(ErrorCode::Internal, "a script has no level");
+  std::vector<LevelVersion> versions(script.levels.size());
+  for (std::size_t i = 0; i < versions.size(); ++i) {
+    versions[i].vertices = script.levels[i].vertices;
+    if (script.levels[i].vertices_a_quad > 0) versions[i].map.vertices_a_quad = script.levels[i].vertices_a_quad;
+  }
+  const LevelWork repeat = [&](TrialMap& trial, std::size_t level, const Progress& part) {
+    for (const std::vector<LayoutScript::Edit>& round : rounds_of(script.levels[level])) repeat_round(trial, round, versions[level].map, part);
+    return script.levels[level].edits;
+  };
+  return map_levels(std::move(map), versions, 0, repeat, progress);
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/search/trial_map.h"
+
+#include <utility>
+
+#include "parameterization/initial_map.h"
+#include "parameterization/patch_energy.h"
+
+namespace hybrid_mesh {
+
+void TrialMap::map_patches_and_keep(const GlobalMapOptions& options, const Progress& progress) {
+  mapped_.corners = map_patches(best_.layout, progress.part(0, 0.1));
+  mapped_.surface = best_.layout;
+  smooth(options, progress.part(0.1, 1));
+  keep();
+}
+
+void TrialMap::refine(double vertices, const GlobalMapOptions& options, const Progress& progress) {
+  try {
+    best_.carry(vertices, options, progress);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::Internal) throw;  // a coarser surface than wished does as well as it can
+  }
+  best_.quadrisect();
+  least_ *= 4;
+}
+
+void TrialMap::begin(double theta, const Progress& progress) {
+  scale_ = best_.charts.scale;
+  mapped_ = best_.cut(progress);
+  energy_ = patch_energies(mapped_, scale_, theta);
+}
+
+LayoutChange TrialMap::change(const LayoutEdit& edit, const Progress& progress) {
+  const LayoutChange change = apply_edit(mapped_, edit);
+  map_patches(mapped_.surface, change.added, mapped_.corners, progress);
+  return change;
+}
+
+LayoutChange TrialMap::change(DrawnEdit drawn, const Progress& progress) {
+  const LayoutChange change = apply_edit(mapped_, std::move(drawn));
+  map_patches(mapped_.surface, change.added, mapped_.corners, progress);
+  return change;
+}
+
+void TrialMap::smooth(GlobalMapOptions options, const Progress& progress) {
+  for (int attempt = 0;; ++attempt) {
+    try {
+      fresh_.emplace(mapped_.surface, mapped_.corners);
+      const GlobalMapReport report = smooth_map(*fresh_, mapped_.surface, options, progress);
+      excess_ = (report.energy - 1) * mapped_.surface.patch_count();
+      return;
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal || attempt == 2) throw;
+      options.vertices_a_quad *= 3;
+    }
+  }
+}
+
+void TrialMap::keep() {
+  least_ = excess_;
+  best_.layout = mapped_.surface;
+  best_.charts = std::move(*fresh_);
+}
+
+void apply_edits(TrialMap& map, const std::vector<LayoutEdit>& edits, GlobalMapOptions options, const Progress& progress) {
+  // Edits that do not shrink leave other patches' numbers alone.
+  for (const LayoutEdit& edit : edits) map.change(edit, progress.part(0, 0));
+  options.newton_steps /= 2;
+  options.cone_rounds /= 2;
+  map.smooth(options, progress);
+}
+
+void apply_drawn_edits(TrialMap& map, std::vector<DrawnEdit> drawn, const GlobalMapOptions& options, const Progress& progress) {
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const bool has_lines = !drawn[i].piece.patch.empty();
+    const LayoutChange change = has_lines ? map.change(std::move(drawn[i]), progress.part(0, 0)) : map.change(drawn[i].edit, progress.part(0, 0));
+    for (std::size_t k = i + 1; k < drawn.size(); ++k) drawn[k].edit = renumbered(std::move(drawn[k].edit), change);
+  }
+  map.smooth(options, progress);
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "layout/regions/region_layout.h"
+#include "layout/search/carried_map.h"
+
+namespace hybrid_mesh {
+
+// The map of a layout, and beside it the map of a changed layout that is tried out and kept or dropped.
+class TrialMap {
+ public:
+  explicit TrialMap(CarriedMap map) : best_(std::move(map)) {}
+
+  // Maps the patches of the layout that it was made with. To be called first.
+  void map_patches_and_keep(const GlobalMapOptions& options, const Progress& progress);
+  // Goes on to the patches' quadrants, on a version of the surface with so many vertices, or a coarser one where that cannot be had.
+  void refine(double vertices, const GlobalMapOptions& options, const Progress& progress);
+
+  const CarriedMap& best() const { return best_; }
+
+  // Begins a trial with the best layout: the surface cut along its sides, and the energy of its patches.
+  void begin(double theta, const Progress& progress);
+  const MappedSurface& mapped() const { return mapped_; }        // of the trial
+  const std::vector<double>& energy() const { return energy_; }  // per patch as it began, beyond an isometry's, in patches
+  double scale() const { return scale_; }                        // of lengths, see ChartMesh
+  // Edits the trial's layout. `drawn`: with the lines along which the new patches' sides lie.
+  LayoutChange change(const LayoutEdit& edit, const Progress& progress);
+  LayoutChange change(DrawnEdit drawn, const Progress& progress);
+  // Smooths the trial's map. Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
+  void smooth(GlobalMapOptions options, const Progress& progress);
+  // Whether the trial's map has less energy than the best.
+  bool is_better() const { return excess_ < least_; }
+  void keep();
+
+ private:
+  CarriedMap best_;
+  MappedSurface mapped_;  // cut along the best layout, or an edited one
+  std::optional<ChartMesh> fresh_;
+  std::vector<double> energy_;
+  double least_ = 0, excess_ = 0;  // energy of the best and of the fresh map beyond an isometry's, in patches
+  double scale_ = 1;
+};
+
+// Edits disjoint regions of the trial's layout, and smooths its map: most of that is as it was before.
+void apply_edits(TrialMap& map, const std::vector<LayoutEdit>& edits, GlobalMapOptions options, const Progress& progress);
+// The same with the lines along which the new patches' sides lie; a piece without patches has none. Most of the map may be new.
+void apply_drawn_edits(TrialMap& map, std::vector<DrawnEdit> drawn, const GlobalMapOptions& options, const Progress& progress);
+
+}  // namespace hybrid_mesh

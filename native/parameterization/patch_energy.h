@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "parameterization/patch_gluing.h"
+
+namespace hybrid_mesh {
+
+// The energy of each patch's map beyond an isometry's, in patches of mean area. `scale`: of lengths, see ChartMesh; `theta`: see Distortion.
+std::vector<double> patch_energies(const MappedSurface& mapped, double scale, double theta);
+
+}  // namespace hybrid_mesh

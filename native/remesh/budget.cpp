@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/budget.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hybrid_mesh {
+namespace {
+
+constexpr int kMostLevels = 12;
+constexpr int kMostPlannedLevels = 6;  // above a base whose size is free: more would leave it a few quads
+
+}  // namespace
+
+std::int64_t uniform_vertices(std::int64_t quads, std::int64_t euler, std::int64_t boundary_sides, int levels) {
+  const std::int64_t cells = std::int64_t{1} << (2 * levels);
+  // At level 0: V = B + chi + E / 2, since 4 B = 2 E_all - E.
+  return levels == 0 ? quads + euler + boundary_sides / 2 : quads * cells + euler + (boundary_sides << levels) / 2;
+}
+
+Budget plan_budget(const RemeshOptions& options, const Source& source, const Target& target) {
+  Budget b;
+  b.vertices = options.vertices > 0 ? options.vertices : static_cast<std::int64_t>(source.repaired.points.size());
+  if (target.vertices > 0) b.vertices = target.vertices;
+  // Roughly what the topology asks for at least.
+  const TopologySummary& topology = source.topology;
+  const double least = 6.0 * topology.components + 8 * topology.genus + 2.6 * topology.boundary_loops;
+  const double enough = std::max(std::clamp(static_cast<double>(b.vertices) / 64, 20.0, 150.0), std::min(1.7 * least, b.vertices / 4.0));
+  if (options.levels >= 0 && options.refinement == Refinement::Uniform) {
+    b.levels = options.levels;
+  } else {
+    while (b.levels < kMostPlannedLevels && static_cast<double>(b.vertices) / std::pow(4.0, b.levels + 1) >= enough) ++b.levels;
+  }
+  return with_levels(b, std::max(0, b.levels - target.levels_less), options, source);
+}
+
+Budget with_levels(Budget b, int levels, const RemeshOptions& options, const Source& source) {
+  b.levels = levels;
+  const double cells = std::pow(4.0, levels);
+  b.boundary_side = 0.5 * std::pow(2.0, levels) / cells;
+  b.base_size = (static_cast<double>(b.vertices) - static_cast<double>(source.topology.euler)) / cells;
+  if (options.base == BaseSize::Given) b.base_size = options.base_quads, b.boundary_side = 0;
+  if (options.base == BaseSize::Minimal) b.base_size = 6, b.boundary_side = 0;
+  return b;
+}
+
+int levels_within(std::int64_t vertices, int level, std::int64_t quads, std::int64_t euler, std::int64_t boundary_sides) {
+  int levels = level;
+  while (levels < kMostLevels && uniform_vertices(quads, euler, boundary_sides, levels + 1 - level) <= vertices) ++levels;
+  return levels;
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/candidate.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "construction/construction.h"
+#include "layout/search/base_map.h"
+#include "parameterization/patch_extraction.h"
+#include "remesh/layout_search_options.h"
+#include "remesh/outlines.h"
+#include "remesh/plan_regions.h"
+#include "remesh/quality.h"
+
+namespace hybrid_mesh {
+namespace {
+
+constexpr int kRequests = 8;
+constexpr double kFacesAQuad = 30;  // of the surface that a base is laid out on, at least
+constexpr double kMostFaces = 2e6;  // ... but no more
+// A base of more quads than this has room for a ring around a feature that sticks out, so that it is sought of so many quads fewer.
+constexpr double kRoomyBase = 280;
+// The last triangles of a decimation are too few to choose quads from: below this size the base's is taken for the least.
+constexpr double kSmallBase = 60;
+
+// A cube for a ball, and four quads around a hole, with which its boundary has no corners; around a handle it takes some forty quads until a map to
+// them holds.
+int least_quads(const TopologySummary& topology) {
+  return static_cast<int>(std::max(6.0 * topology.components, 39.0 * topology.genus) + 4.0 * topology.boundary_loops);
+}
+
+double area_of(const TriangleSurface& surface) {
+  double area = 0;
+  for (const auto& f : surface.faces)
+    area += 0.5 * (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
+  return area;
+}
+
+// Gives all quads of the construction's level their maps.
+void set_maps(Construction& made, LevelMap& level, const RemeshTask& task, const WorkingSurface& working, const Progress& progress) {
+  std::vector<PatchMap> maps = extract_patch_maps(level.charts, level.layout, working.mesh.faces, progress);
+  for (int q = 0; q < level.layout.patch_count(); ++q) {
+    const char* defect = find_map_defect(maps[q]);
+    if (*defect)
+      throw Error(ErrorCode::Internal, "the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
+    working.to_repaired(maps[q], task.source.repaired);
+    made.set_map(q, std::move(maps[q]));
+  }
+}
+
+// The construction of a base and the levels that were edited, at the last of these.
+Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
+  Construction made(map.levels.front().layout.graph(), area_of(working.mesh));
+  const auto parts = static_cast<double>(map.levels.size());
+  for (std::size_t i = 0; i < map.levels.size(); ++i) {
+    while (made.level() < map.levels[i].level) {
+      made.refine();
+      for (std::vector<LayoutScript::Edit>& round : rounds_of(map.script.levels[made.level()])) made.apply(std::move(round));
+    }
+    set_maps(made, map.levels[i], task, working, task.progress.part(0.5 + 0.05 * i / parts, 0.5 + 0.05 * (i + 1) / parts));
+  }
+  return made;
+}
+
+Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request) {
+  const RemeshOptions& options = task.options;
+  Plan::Origin origin;
+  origin.surface = task.source.fingerprint;
+  origin.faces = static_cast<std::int64_t>(std::min(kFacesAQuad * budget.base_size, kMostFaces));
+  BaseDomainOptions& base_options = origin.base;
+  base_options.size = budget.base_size;
+  base_options.boundary_side = budget.boundary_side;
+  if (options.base == BaseSize::Minimal) {
+    base_options.size = least_quads(task.source.topology) * request.size_factor;
+    if (base_options.size < kSmallBase) base_options.least = static_cast<int>(base_options.size);
+  }
+  base_options.seed = request.seed;
+  if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
+  WorkingSurface working;
+  const BaseDomain base = make_base(task, origin, working);
+  BaseMap map =
+      map_to_base(working.mesh, base, layout_search_options(options, budget, task.source.topology, base, request), task.progress.part(0.15, 0.5));
+  origin.level = map.script.levels.front();
+  return assemble_candidate(task, working, std::move(map), origin, {});
+}
+
+// The vertices of the coarsest uniform mesh that the candidate's hierarchy has, or of one with so many levels.
+std::int64_t vertices_needed(const Candidate& c, const Source& source, int levels) {
+  return uniform_vertices(c.finest_quads, source.topology.euler, c.finest_boundary_sides, std::max(c.finest, levels) - c.finest);
+}
+
+}  // namespace
+
+std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool another) {
+  std::vector<BaseRequest> requests;
+  for (int k = 0; k < kRequests; ++k) {
+    BaseRequest& r = requests.emplace_back();
+    // Nearby decisions differ.
+    r.seed = options.seed + 1000003ull * static_cast<std::uint64_t>(k + (another ? kRequests : 0));
+    if (options.base != BaseSize::Minimal) continue;
+    // The same size once more on a finer surface, then larger bases, which are easier to map; at last without operations.
+    if (k == 1) r.vertices_a_quad = 60;
+    r.size_factor = k < 2 ? 1 : 1 << (2 * std::min(k - 1, 3));
+    r.operations = k < 4;
+  }
+  return requests;
+}
+
+std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
+  const std::vector<char> irregular = irregular_vertices(mesh);
+  std::vector<VertexId> names;
+  for (std::size_t v = 0; v < irregular.size(); ++v)
+    if (irregular[v]) names.push_back(mesh.vertex[v]);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurface& working) {
+  task.progress.stage("base domain");
+  task.watch.start("base");
+  working = make_working_surface(task.source.repaired, task.source.placement, origin.faces);
+  BaseDomain base(working.mesh, origin.base, task.progress.part(0.05, 0.15));
+  task.progress.stage("map");
+  task.watch.start("map");
+  return base;
+}
+
+Candidate search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests) {
+  const RemeshOptions& options = task.options;
+  Budget budget = plan_budget(options, task.source, target);
+  std::string failure;
+  std::int64_t least = -1;
+  for (const BaseRequest& request : requests) {
+    try {
+      Candidate c = make_candidate(task, budget, request);
+      c.levels = budget.levels;
+      // With a base of any size the number of levels is what makes a mesh of the size asked for.
+      if (options.base == BaseSize::Minimal && options.refinement == Refinement::Uniform && options.levels < 0 && options.error == 0)
+        c.levels = levels_within(budget.vertices, c.finest, c.finest_quads, task.source.topology.euler, c.finest_boundary_sides);
+      const std::int64_t needed = vertices_needed(c, task.source, c.levels);
+      const bool bound = options.vertices > 0 && options.refinement == Refinement::Uniform;
+      if (!bound || needed <= options.vertices) return c;
+      least = least < 0 ? needed : std::min(least, needed);
+      if (c.levels == 0 || options.levels >= 0) break;
+      budget = with_levels(budget, c.levels - 1, options, task.source);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+      failure = e.what();
+    }
+  }
+  if (least >= 0)
+    throw Error(ErrorCode::InvalidInput,
+                "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(options.vertices) + " allowed");
+  throw Error(ErrorCode::Internal, failure);
+}
+
+Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
+                             const std::vector<Plan::Region>& regions) {
+  const Placement& placement = task.source.placement;
+  const QuadGraph base = map.levels.front().layout.graph();
+  task.watch.start("extract");
+  Construction made = construct(map, task, working);
+  repatch_regions(made, regions, placement, task.progress.part(0.55, 0.6));
+  made.close();
+  HybridMesh& hierarchy = made.hierarchy();
+  hierarchy.set_closure(task.options.faces);
+  Candidate c;
+  c.base_quads = base.patch_count();
+  c.base_vertices = base.node_count;
+  c.finest = made.level();
+  c.finest_quads = made.quads().graph().patch_count();
+  for (const auto& n : made.quads().graph().neighbours)
+    for (const PatchSide& s : n) c.finest_boundary_sides += s.patch < 0;
+  c.finest_irregular = irregular_names(hierarchy.level_mesh(c.finest));
+  c.plan_root = made.root_numbers();
+  Plan plan;
+  plan.base = outline_of_base(hierarchy, base);
+  plan.origin = origin;
+  for (std::size_t level = 1; level < map.script.levels.size(); ++level) {
+    LayoutScript::Level& of = plan.levels.emplace_back(map.script.levels[level]);
+    for (std::size_t k = 0; k < of.edits.size(); ++k) of.edits[k] = made.edits()[level][k];  // with their addresses
+  }
+  plan.regions = regions;
+  const auto from_unit = [&](const Vec3& p) { return placement.from_unit(p); };
+  move_outline(plan.base, from_unit);
+  move_outlines(plan.levels, from_unit);
+  c.plan = to_json(plan);
+  c.hierarchy = std::move(hierarchy);
+  task.watch.stop();
+  return c;
+}
+
+}  // namespace hybrid_mesh

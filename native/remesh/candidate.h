@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hierarchy/hybrid_mesh.h"
+#include "layout/search/base_map.h"
+#include "remesh/budget.h"
+#include "remesh/plan.h"
+#include "surface/distance.h"
+
+namespace hybrid_mesh {
+
+// One remesh of the source, of unit size, with all that belongs to it: of several candidates one is kept whole.
+struct Candidate {
+  HybridMesh hierarchy;        // with its maps; refined as far as it has been fitted
+  std::string plan;            // JSON text
+  std::vector<int> plan_root;  // see RemeshResult
+  int base_quads = 0, base_vertices = 0;
+  int levels = 0;  // above the base, of a uniform mesh
+
+  // The last level with operations (0: none), all of whose quads have a map of their own.
+  int finest = 0;
+  std::int64_t finest_quads = 0, finest_boundary_sides = 0;
+  std::vector<VertexId> finest_irregular;  // sorted
+
+  QuadMesh final_mesh;                                // fitted
+  std::vector<QuadMesh> level_meshes;                 // of every level, fitted; the last is the final mesh
+  std::vector<nlohmann::ordered_json> level_reports;  // see the report's "levels"
+  SurfaceDistance distance;                           // of the final mesh
+};
+
+// A search for a base domain and a map to it. What is tried, one after the other, for as long as no map is found.
+struct BaseRequest {
+  std::uint64_t seed = 0;      // decides near-ties
+  int size_factor = 1;         // of a minimal base: more quads where a map to fewer cannot be had
+  bool operations = true;      // with a minimal base: irregular operations on a finer level
+  double vertices_a_quad = 0;  // of the surface on which these are found; 0: as is usual
+};
+// Eight of them. `another`: others than those of the first time.
+std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool another);
+
+// The first of the requests that gives a map, and, with a bound on the vertices, a uniform mesh within it; the number of levels falls until it does.
+// Throws Error{InvalidInput} where the surface needs more vertices than allowed, Error{Internal} if there is no map.
+Candidate search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests);
+
+// What a plan says: made again as it was on the surface that the plan was made on, else laid out on this one. Throws Error.
+Candidate planned_candidate(const RemeshTask& task, const Plan& plan);
+
+// A map to a base and what was decided, as a candidate. `working`: the surface that the map is of. `regions`: to be laid out anew.
+// Throws Error{Internal} where the map does not hold, and what repatch_regions() throws.
+Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
+                             const std::vector<Plan::Region>& regions);
+
+// The base domain that a plan's origin tells of, on the surface that `working` is made of it.
+BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurface& working);
+
+// The names of the inner vertices of a mesh where other than four faces meet, sorted.
+std::vector<VertexId> irregular_names(const QuadMesh& mesh);
+
+}  // namespace hybrid_mesh

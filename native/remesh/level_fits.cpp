@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/level_fits.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "remesh/adaptive_refinement.h"
+#include "remesh/report.h"
+#include "remesh/surface_fit.h"
+
+namespace hybrid_mesh {
+namespace {
+
+FitOptions final_fit() {
+  FitOptions options;
+  options.rounds = 2;
+  // Only where quads are as good as square: elsewhere the shape would suffer more than the distance gains.
+  options.square_smoothness = 0.012;
+  options.poor = 0.96;
+  options.square = 0.985;
+  return options;
+}
+
+// Of a level whose quads are much larger than the shape's features: held closer to where the map puts them, or corners overshoot tips.
+FitOptions coarse_fit() {
+  FitOptions options;
+  options.rounds = 1;
+  options.tangential = 0.1;
+  return options;
+}
+
+void fit(QuadMesh& mesh, const HybridMesh& hierarchy, const FitOptions& fit_options, int turns, int level, const Progress& progress) {
+  SurfaceFitOptions options;
+  options.first = fit_options;
+  options.turns = turns;
+  options.finest = level;
+  fit_to_surface(mesh, hierarchy, options, progress);
+}
+
+// The vertices of a fitted mesh by their names.
+class FittedVertices {
+ public:
+  explicit FittedVertices(const QuadMesh& mesh) : mesh_(mesh) {
+    for (std::size_t v = 0; v < mesh.vertex.size(); ++v) at_.push_back({mesh.vertex[v], v});
+    std::sort(at_.begin(), at_.end());
+  }
+  // Puts the vertices of a level where they are in the fitted mesh, if it has most of that mesh's.
+  bool place(QuadMesh& level) const {
+    std::vector<std::pair<std::size_t, std::size_t>> shared;
+    for (std::size_t v = 0; v < level.vertex.size(); ++v) {
+      const auto at = std::lower_bound(at_.begin(), at_.end(), std::pair(level.vertex[v], std::size_t{0}));
+      if (at != at_.end() && at->first == level.vertex[v]) shared.push_back({v, at->second});
+    }
+    if (2 * shared.size() < at_.size()) return false;
+    for (const auto& [v, w] : shared) level.points[v] = mesh_.points[w];
+    return true;
+  }
+
+ private:
+  const QuadMesh& mesh_;
+  std::vector<std::pair<VertexId, std::size_t>> at_;
+};
+
+}  // namespace
+
+void fit_uniform(const RemeshTask& task, Candidate& c, int level) {
+  task.progress.stage("fit");
+  task.watch.start("fit");
+  c.hierarchy.refine_uniform(std::max(level, c.finest));
+  c.final_mesh = c.hierarchy.level_mesh(level);
+  fit(c.final_mesh, c.hierarchy, final_fit(), 2, level, task.progress.part(0.6, 0.8));
+}
+
+void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
+  task.progress.stage("adaptive refinement");
+  task.watch.start("adaptive");
+  AdaptiveOptions adaptive;
+  // An error bound alone asks for as few vertices as meet it, however many that are.
+  adaptive.vertices = task.options.error > 0 && task.options.vertices == 0 ? 0 : vertices;
+  adaptive.error = task.options.error;
+  if (task.options.levels >= 0) adaptive.deepest = task.options.levels;
+  c.final_mesh = refine_adaptively(c.hierarchy, *task.source.reference, adaptive, task.progress.part(0.55, 0.8));
+}
+
+void finish_levels(const RemeshTask& task, Candidate& c) {
+  task.progress.stage("levels");
+  task.watch.start("levels");
+  const int depth = c.hierarchy.depth();
+  const FittedVertices fitted(c.final_mesh);
+  c.level_meshes.assign(depth + 1, {});
+  c.level_reports.assign(depth + 1, {});
+  // The finest, which take the longest, first.
+  tbb::parallel_for(0, depth + 1, [&](int k) {
+    const int j = depth - k;
+    const bool last = j == depth;
+    const Progress part = task.progress.part(0.8, last ? 0.95 : 0.8);
+    QuadMesh& mesh = c.level_meshes[j];
+    mesh = last ? c.final_mesh : c.hierarchy.level_mesh(j);
+    // A level that is nearly the final mesh begins with that and has little left to do.
+    if (!last) fit(mesh, c.hierarchy, coarse_fit(), fitted.place(mesh) ? 0 : 1, j, part);
+    DistanceOptions samples;
+    if (!last) samples.samples = 30000;
+    const SurfaceDistance distance = task.source.reference->distance(to_soup(mesh), samples, part);
+    if (last) c.distance = distance;
+    c.level_reports[j] = describe_level(c.hierarchy, j, mesh, distance);
+  });
+  task.watch.stop();
+}
+
+}  // namespace hybrid_mesh

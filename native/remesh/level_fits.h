@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "remesh/candidate.h"
+
+namespace hybrid_mesh {
+
+// Each makes `candidate.final_mesh` and fits it to the surface:
+// a uniform mesh of one level;
+void fit_uniform(const RemeshTask& task, Candidate& candidate, int level);
+// an adaptive one within the options' bounds. `vertices`: what the budget allows.
+void fit_adaptive(const RemeshTask& task, Candidate& candidate, std::int64_t vertices);
+
+// Fits and measures all levels, of which the last is the final mesh.
+void finish_levels(const RemeshTask& task, Candidate& candidate);
+
+}  // namespace hybrid_mesh

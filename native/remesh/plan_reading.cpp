@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "construction/addressed_graph.h"
+#include "layout/regions/region_pattern.h"
+#include "remesh/plan.h"
+#include "remesh/plan_format.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using namespace plan_format;
+
+constexpr std::int64_t kMostRounds = 1000000;
+
+void curves_from_json(const PlanEntry& entry, LayoutOutline& outline) {
+  outline.sides.resize(outline.quads.size());
+  for (const PlanEntry& e : entry.list()) {
+    e.only({"quad", "side", "points"});
+    std::vector<Vec3>& side = outline.sides[e.at("quad").index(outline.quads.size())][e.at("side").index(4)];
+    for (const PlanEntry& p : e.at("points").list()) side.push_back(p.point());
+    if (side.size() < 2) e.at("points").refuse("must have at least two points");
+  }
+}
+
+BoundaryTower tower_from_json(const PlanEntry& entry) {
+  BoundaryTower tower;
+  const PlanEntry nodes = entry.at("boundary_nodes");
+  if (!nodes.is(kAutomatic))
+    for (const PlanEntry& p : nodes.list(4)) tower.nodes.push_back(p.point());
+  if (entry.has("cubes")) tower.cubes = static_cast<int>(entry.at("cubes").integer(0, kMostCubes));
+  return tower;
+}
+
+LayoutOutline base_from_json(const PlanEntry& entry) {
+  entry.only({"nodes", "quads", "neighbours", "curves", "origin"});
+  LayoutOutline base;
+  for (const PlanEntry& e : entry.at("nodes").list()) base.nodes.push_back(e.point());
+  for (const PlanEntry& e : entry.at("quads").list()) {
+    const std::vector<PlanEntry> corners = e.list(4);
+    std::array<int, 4> quad;
+    for (int i = 0; i < 4; ++i) quad[i] = corners[i].index(base.nodes.size());
+    base.quads.push_back(quad);
+  }
+  if (base.quads.empty()) entry.refuse("has no quads");
+  if (entry.has("neighbours"))
+    for (const PlanEntry& e : entry.at("neighbours").list(base.quads.size())) {
+      const std::vector<PlanEntry> sides = e.list(4);
+      std::array<PatchSide, 4> of;
+      for (int i = 0; i < 4; ++i) {
+        const std::vector<PlanEntry> link = sides[i].list(2);
+        of[i] = {static_cast<int>(link[0].integer(-1, static_cast<std::int64_t>(base.quads.size()) - 1)), link[1].index(4)};
+      }
+      base.neighbours.push_back(of);
+    }
+  for (std::size_t q = 0; q < base.neighbours.size(); ++q)
+    for (int i = 0; i < 4; ++i) {
+      const PatchSide& s = base.neighbours[q][i];
+      if (s.patch < 0) continue;
+      const PatchSide& back = base.neighbours[s.patch][s.side];
+      if (back.patch != static_cast<int>(q) || back.side != i)
+        entry.at("neighbours").list()[q].list()[i].refuse("names a side that does not name this one");
+    }
+  if (entry.has("curves")) curves_from_json(entry.at("curves"), base);
+  return base;
+}
+
+// --- edits ---------------------------------------------------------------------------------------------------------------------------
+std::array<int, 4> new_quad(const PlanEntry& entry, std::int64_t most) {
+  const std::vector<PlanEntry> nodes = entry.list(4);
+  std::array<int, 4> quad;
+  for (int i = 0; i < 4; ++i) quad[i] = static_cast<int>(nodes[i].integer(0, most));
+  return quad;
+}
+
+LayoutEdit layout_edit_from_json(const PlanEntry& entry, const AddressedGraph& layout) {
+  const auto quad = [&](const PlanEntry& e) {
+    const int q = layout.find(e.text());
+    if (q < 0) e.refuse("names the quad " + e.text() + ", which that level does not have");
+    return q;
+  };
+  std::vector<int> patches;
+  for (const PlanEntry& e : entry.at("quads").list()) patches.push_back(quad(e));
+  PatchSide start;
+  if (entry.has("start")) {
+    const std::vector<PlanEntry> s = entry.at("start").list(2);
+    start = {quad(s[0]), s[1].index(4)};
+    const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
+    if (!inside(start.patch) || inside(layout.graph().neighbours[start.patch][start.side].patch))
+      entry.at("start").refuse("is no side of the quads' boundary");
+  }
+  const std::optional<PatchRegion> region = make_region(layout.graph(), patches, start);
+  if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
+  const std::string kind = entry.at("kind").text();
+  if (kind == "add_cubes") return tower_edit(layout.graph(), *region, static_cast<int>(entry.at("height").integer(1, kMostCubes)));
+  if (kind != "repatch") entry.at("kind").refuse("must be \"repatch\" or \"add_cubes\"");
+  LayoutEdit edit;
+  edit.patches = region->patches;
+  edit.start = region->boundary[0];
+  const std::vector<PlanEntry> quads = entry.at("new_quads").list();
+  const int corners = static_cast<int>(region->corners.size());
+  for (const PlanEntry& e : quads) edit.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size()) + corners));
+  if (const std::string defect = find_filling_defect(edit.quads, corners); !defect.empty()) entry.at("new_quads").refuse(defect);
+  for (const auto& q : edit.quads) edit.inner_nodes = std::max(edit.inner_nodes, *std::max_element(q.begin(), q.end()) + 1 - corners);
+  return edit;
+}
+
+LayoutScript::Edit edit_from_json(const PlanEntry& entry, const AddressedGraph& layout) {
+  LayoutScript::Edit of;
+  of.edit = layout_edit_from_json(entry, layout);
+  for (const int q : of.edit.patches) of.quads.push_back(to_string(layout.address(q)));
+  of.start_quad = to_string(layout.address(of.edit.start.patch));
+  of.even = entry.has("even_quads");
+  if (!of.even) return of;
+  of.even_quads = entry.at("even_quads").number(0);
+  if (!entry.has("nodes")) return of;
+  // The region's corners, then the new ones.
+  of.outline.quads = of.edit.quads;
+  int count = 0;
+  for (const auto& q : of.edit.quads) count = std::max(count, 1 + *std::max_element(q.begin(), q.end()));
+  for (const PlanEntry& p : entry.at("nodes").list(count)) of.outline.nodes.push_back(p.point());
+  if (entry.has("curves")) curves_from_json(entry.at("curves"), of.outline);
+  return of;
+}
+
+void apply_round(AddressedGraph& layout, std::vector<LayoutEdit> edits) {
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    const LayoutChange change = layout.apply(edits[i]);
+    for (std::size_t k = i + 1; k < edits.size(); ++k) edits[k] = renumbered(std::move(edits[k]), change);
+  }
+}
+
+LayoutEdit raw_edit(const PlanEntry& entry) {
+  constexpr std::int64_t most = std::numeric_limits<int>::max();
+  LayoutEdit edit;
+  for (const PlanEntry& e : entry.at("patches").list()) edit.patches.push_back(static_cast<int>(e.integer(0, most)));
+  const std::vector<PlanEntry> start = entry.at("start").list(2);
+  edit.start = {static_cast<int>(start[0].integer(0, most)), start[1].index(4)};
+  for (const PlanEntry& e : entry.at("quads").list()) {
+    const std::vector<PlanEntry> nodes = e.list(4);
+    std::array<int, 4> q;
+    for (int i = 0; i < 4; ++i) q[i] = static_cast<int>(nodes[i].integer(0, most));
+    edit.quads.push_back(q);
+  }
+  edit.rings = static_cast<int>(entry.at("rings").integer(0, most));
+  edit.inner_nodes = static_cast<int>(entry.at("inner_nodes").integer(0, most));
+  return edit;
+}
+
+Plan::Origin origin_from_json(const PlanEntry& entry) {
+  if (entry.has("boundary_nodes")) {
+    entry.only({"surface", "boundary_nodes", "cubes"});
+    Plan::Origin origin;
+    origin.surface = entry.at("surface").text();
+    origin.tower = tower_from_json(entry);
+    return origin;
+  }
+  entry.only({"surface", "faces", "size", "boundary_side", "least", "seed", "vertices", "vertices_a_quad", "rounds"});
+  Plan::Origin origin;
+  origin.surface = entry.at("surface").text();
+  origin.faces = entry.at("faces").integer(0, std::numeric_limits<std::int64_t>::max());
+  origin.base.size = entry.at("size").number(1);
+  origin.base.boundary_side = entry.at("boundary_side").number(0);
+  origin.base.least = static_cast<int>(entry.at("least").integer(0, std::numeric_limits<int>::max()));
+  origin.base.seed = static_cast<std::uint64_t>(entry.at("seed").integer(0, std::numeric_limits<std::int64_t>::max()));
+  origin.level.vertices = entry.at("vertices").number(0);
+  origin.level.vertices_a_quad = entry.at("vertices_a_quad").number(0);
+  int number = 0;
+  for (const PlanEntry& round : entry.at("rounds").list()) {
+    ++number;
+    for (const PlanEntry& e : round.list()) origin.level.edits.push_back({raw_edit(e), number, false, 0, {}, {}, {}});
+  }
+  return origin;
+}
+
+// --- levels ----------------------------------------------------------------------------------------------------------------------------
+QuadGraph graph_of(const LayoutOutline& base) {
+  QuadGraph layout;
+  layout.nodes = base.quads;
+  layout.neighbours = base.neighbours;
+  layout.node_count = static_cast<int>(base.nodes.size());
+  if (!layout.neighbours.empty()) return layout;
+  layout.neighbours.resize(base.quads.size());
+  std::map<std::pair<int, int>, PatchSide> sides;
+  for (int q = 0; q < layout.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i) sides[{base.quads[q][i], base.quads[q][(i + 1) % 4]}] = {q, i};
+  for (int q = 0; q < layout.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (const auto it = sides.find({base.quads[q][(i + 1) % 4], base.quads[q][i]}); it != sides.end()) layout.neighbours[q][i] = it->second;
+  return layout;
+}
+
+std::vector<LayoutScript::Level> levels_from_json(const PlanEntry& entry, const LayoutOutline& base) {
+  AddressedGraph layout(graph_of(base));
+  std::vector<LayoutScript::Level> levels;
+  for (const PlanEntry& e : entry.list()) {
+    e.only({"level", "vertices", "vertices_a_quad", "operations"});
+    const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, kMostLevels));
+    while (levels.size() < level) {
+      if (4 * static_cast<std::int64_t>(layout.graph().patch_count()) > kMostPlanQuads)
+        e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
+      levels.emplace_back();
+      layout.quadrisect();
+    }
+    LayoutScript::Level& of = levels.back();
+    if (e.has("vertices")) of.vertices = e.at("vertices").number(0);
+    if (e.has("vertices_a_quad")) of.vertices_a_quad = e.at("vertices_a_quad").number(0);
+    // Operations of one round are named by the layout before it; without rounds each one is a round of its own.
+    std::int64_t now = -1;
+    std::vector<LayoutEdit> round;
+    for (const PlanEntry& op : e.at("operations").list()) {
+      op.only({"kind", "quads", "start", "height", "new_quads", "round", "even_quads", "nodes", "curves"});
+      const std::int64_t r = op.has("round") ? op.at("round").integer(std::max<std::int64_t>(0, now), kMostRounds) : now + 1;
+      if (r != now) apply_round(layout, std::exchange(round, {}));
+      LayoutScript::Edit edit = edit_from_json(op, layout);
+      edit.round = static_cast<int>(r);
+      for (const LayoutEdit& other : round)
+        for (const int q : other.patches)
+          if (std::find(edit.edit.patches.begin(), edit.edit.patches.end(), q) != edit.edit.patches.end())
+            op.refuse("has a quad that another operation of its round has");
+      if (edit.even && r > 0) op.at("even_quads").refuse("belongs to the first round, which is 0");
+      if (!edit.even && r == 0 && !of.edits.empty() && of.edits.back().even) op.refuse("has no \"even_quads\", as others of its round have");
+      round.push_back(edit.edit);
+      of.edits.push_back(std::move(edit));
+      now = r;
+    }
+    apply_round(layout, std::move(round));
+  }
+  return levels;
+}
+
+// --- regions -------------------------------------------------------------------------------------------------------------------------
+std::vector<DrawnStroke> strokes_from_json(const PlanEntry& entry) {
+  std::vector<DrawnStroke> strokes;
+  for (const PlanEntry& c : entry.list()) {
+    c.only({"points", "fit"});
+    DrawnStroke stroke;
+    for (const PlanEntry& p : c.at("points").list()) stroke.points.push_back(p.point());
+    if (c.has("fit")) {
+      const std::string fit = c.at("fit").text();
+      if (fit != "tight" && fit != "drawn") c.at("fit").refuse("must be \"tight\" or \"drawn\"");
+      stroke.fit = fit == "tight" ? DrawnStroke::Fit::Tight : DrawnStroke::Fit::AsDrawn;
+    }
+    strokes.push_back(std::move(stroke));
+  }
+  return strokes;
+}
+
+Plan::Region region_from_json(const PlanEntry& entry) {
+  Plan::Region r;
+  std::set<std::string> keys{"level", "quads", "buffer_rings"};
+  if (entry.has("layout")) {
+    if (entry.has("curves")) entry.refuse("has \"curves\" and a \"layout\": it is laid out in one way");
+    const std::string word = entry.at("layout").text();
+    for (const auto& [kind, name] : kRegionLayouts)
+      if (word == name) r.pattern.kind = kind;
+    if (r.pattern.kind == RegionPattern::Kind::Drawn) entry.at("layout").refuse("must be \"automatic\", \"cubes\" or \"template\"");
+    keys.insert("layout");
+    if (r.pattern.kind == RegionPattern::Kind::Cubes) keys.insert("height");
+    if (r.pattern.kind == RegionPattern::Kind::Template) keys.insert({"start", "new_quads"});
+  } else {
+    if (!entry.has("curves")) entry.refuse("has neither \"curves\" nor a \"layout\"");
+    keys.insert("curves");
+  }
+  entry.only(keys);
+  r.level = static_cast<int>(entry.at("level").integer(1, kMostLevels));
+  for (const PlanEntry& q : entry.at("quads").list()) r.quads.push_back(q.text());
+  if (r.quads.empty()) entry.refuse("has no quads");
+  if (entry.has("curves")) r.pattern.strokes = strokes_from_json(entry.at("curves"));
+  if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, kMostCubes));
+  if (r.pattern.kind == RegionPattern::Kind::Template) {
+    const std::vector<PlanEntry> start = entry.at("start").list(2), quads = entry.at("new_quads").list();
+    r.start_quad = start[0].text();
+    r.start_side = start[1].index(4);
+    for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
+  }
+  if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, 100));
+  return r;
+}
+
+}  // namespace
+
+Plan plan_from_json(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "the plan is not JSON");
+  const PlanEntry top(json, PlanEntry::kTop);
+  top.only({"format", "version", "base", "levels", "operations"});
+  if (top.at("format").text() != kFormat) top.at("format").refuse(std::string("must be \"") + kFormat + "\"");
+  if (const std::int64_t version = top.at("version").integer(1, 1000000); version > kVersion)
+    throw Error(ErrorCode::Unsupported,
+                "the plan has version " + std::to_string(version) + "; this program reads versions up to " + std::to_string(kVersion));
+  const PlanEntry base = top.at("base");
+  Plan plan;
+  if (base.has("boundary_nodes")) {
+    base.only({"boundary_nodes", "cubes"});
+    plan.tower = tower_from_json(base);
+    if (top.has("levels") && !top.at("levels").list().empty())
+      top.at("levels").refuse("must be empty: quads have addresses once the base has been made; \"operations\" may be given");
+  } else {
+    plan.base = base_from_json(base);
+    if (base.has("origin")) plan.origin = origin_from_json(base.at("origin"));
+  }
+  if (top.has("levels") && !plan.tower) {
+    try {
+      plan.levels = levels_from_json(top.at("levels"), plan.base);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::Internal) throw;
+      throw Error(ErrorCode::InvalidInput, std::string("the plan's operations do not fit its base: ") + e.what());
+    }
+  }
+  if (top.has("operations"))
+    for (const PlanEntry& e : top.at("operations").list()) plan.regions.push_back(region_from_json(e));
+  return plan;
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "remesh/plan.h"
+#include "remesh/plan_format.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using namespace plan_format;
+
+Json to_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+// --- base domain -------------------------------------------------------------------------------------------------------------------
+Json nodes_to_json(const LayoutOutline& outline) {
+  Json nodes = Json::array();
+  for (const Vec3& p : outline.nodes) nodes.push_back(to_json(p));
+  return nodes;
+}
+
+Json curves_to_json(const LayoutOutline& outline) {
+  Json curves = Json::array();
+  for (std::size_t q = 0; q < outline.sides.size(); ++q)
+    for (int i = 0; i < 4; ++i) {
+      if (outline.sides[q][i].empty()) continue;
+      Json points = Json::array();
+      for (const Vec3& p : outline.sides[q][i]) points.push_back(to_json(p));
+      curves.push_back({{"quad", q}, {"side", i}, {"points", std::move(points)}});
+    }
+  return curves;
+}
+
+Json tower_to_json(const BoundaryTower& tower) {
+  Json nodes = Json::array();
+  for (const Vec3& p : tower.nodes) nodes.push_back(to_json(p));
+  return {{"boundary_nodes", tower.nodes.empty() ? Json(kAutomatic) : std::move(nodes)}, {"cubes", tower.cubes}};
+}
+
+Json base_to_json(const Plan& plan) {
+  if (plan.tower) return tower_to_json(*plan.tower);
+  const LayoutOutline& base = plan.base;
+  Json neighbours = Json::array();
+  for (const auto& n : base.neighbours) {
+    Json sides = Json::array();
+    for (const PatchSide& s : n) sides.push_back({s.patch, s.side});
+    neighbours.push_back(std::move(sides));
+  }
+  return {{"nodes", nodes_to_json(base)}, {"quads", base.quads}, {"neighbours", std::move(neighbours)}, {"curves", curves_to_json(base)}};
+}
+
+// Edits of the base level: all are named by numbers in the base domain as it was first, which the plan does not hold.
+Json raw_edit(const LayoutEdit& edit) {
+  return {{"patches", edit.patches},
+          {"start", {edit.start.patch, edit.start.side}},
+          {"quads", edit.quads},
+          {"rings", edit.rings},
+          {"inner_nodes", edit.inner_nodes}};
+}
+Json origin_to_json(const Plan::Origin& origin) {
+  if (origin.tower) {
+    Json out = tower_to_json(*origin.tower);
+    out["surface"] = origin.surface;
+    return out;
+  }
+  Json rounds = Json::array();
+  for (const std::vector<LayoutScript::Edit>& round : rounds_of(origin.level)) {
+    Json list = Json::array();
+    for (const LayoutScript::Edit& of : round) list.push_back(raw_edit(of.edit));
+    rounds.push_back(std::move(list));
+  }
+  return {{"surface", origin.surface},         {"faces", origin.faces},
+          {"size", origin.base.size},          {"boundary_side", origin.base.boundary_side},
+          {"least", origin.base.least},        {"seed", origin.base.seed},
+          {"vertices", origin.level.vertices}, {"vertices_a_quad", origin.level.vertices_a_quad},
+          {"rounds", std::move(rounds)}};
+}
+
+// Kinds of edits: towers are told by their height, the rest by its quads.
+const char* kind_of(const LayoutEdit& edit) { return edit.rings > 0 ? "add_cubes" : "repatch"; }
+
+Json edit_to_json(const LayoutScript::Edit& of) {
+  Json out{{"kind", kind_of(of.edit)}, {"quads", of.quads}, {"start", {of.start_quad, of.edit.start.side}}};
+  if (of.edit.rings > 0)
+    out["height"] = of.edit.rings;
+  else
+    out["new_quads"] = of.edit.quads;
+  out["round"] = of.round;
+  if (of.even) {
+    out["even_quads"] = of.even_quads;
+    out["nodes"] = nodes_to_json(of.outline);
+    out["curves"] = curves_to_json(of.outline);
+  }
+  return out;
+}
+
+Json levels_to_json(const Plan& plan) {
+  Json out = Json::array();
+  for (std::size_t level = 0; level < plan.levels.size(); ++level) {
+    const LayoutScript::Level& of = plan.levels[level];
+    Json operations = Json::array();
+    for (const LayoutScript::Edit& edit : of.edits) operations.push_back(edit_to_json(edit));
+    out.push_back({{"level", level + 1}, {"vertices", of.vertices}, {"vertices_a_quad", of.vertices_a_quad}, {"operations", std::move(operations)}});
+  }
+  return out;
+}
+
+Json curves_to_json(const std::vector<DrawnStroke>& strokes) {
+  Json curves = Json::array();
+  for (const DrawnStroke& s : strokes) {
+    Json points = Json::array();
+    for (const Vec3& p : s.points) points.push_back(to_json(p));
+    curves.push_back({{"points", std::move(points)}, {"fit", s.fit == DrawnStroke::Fit::Tight ? "tight" : "drawn"}});
+  }
+  return curves;
+}
+
+Json regions_to_json(const Plan& plan) {
+  Json out = Json::array();
+  for (const Plan::Region& r : plan.regions) {
+    Json region{{"level", r.level}, {"quads", r.quads}};
+    if (r.pattern.kind == RegionPattern::Kind::Drawn) region["curves"] = curves_to_json(r.pattern.strokes);
+    for (const auto& [kind, name] : kRegionLayouts)
+      if (r.pattern.kind == kind) region["layout"] = name;
+    if (r.pattern.height > 0) region["height"] = r.pattern.height;
+    if (!r.start_quad.empty()) region["start"] = {r.start_quad, r.start_side};
+    if (r.pattern.kind == RegionPattern::Kind::Template) region["new_quads"] = r.pattern.quads;
+    region["buffer_rings"] = r.buffer_rings;
+    out.push_back(std::move(region));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string to_json(const Plan& plan) {
+  Json base = base_to_json(plan);
+  if (plan.origin) base["origin"] = origin_to_json(*plan.origin);
+  Json out{{"format", kFormat}, {"version", kVersion}, {"base", std::move(base)}, {"levels", levels_to_json(plan)}};
+  if (!plan.regions.empty()) out["operations"] = regions_to_json(plan);
+  return out.dump();
+}
+
+}  // namespace hybrid_mesh

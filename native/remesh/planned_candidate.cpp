@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "layout/search/base_map.h"
+#include "remesh/candidate.h"
+#include "remesh/outlines.h"
+
+namespace hybrid_mesh {
+namespace {
+
+constexpr int kFacesAQuad = 30;  // of the surface that a base is laid out on, at least
+constexpr int kLikelyCubes = 8;  // of a tower whose height is left to the surface
+
+// A base's level, and then those that the plan has above it.
+LayoutScript script_over(LayoutScript::Level base, const Plan& plan) {
+  LayoutScript script{{std::move(base)}};
+  script.levels.insert(script.levels.end(), plan.levels.begin(), plan.levels.end());
+  return script;
+}
+
+BaseMap map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, WorkingSurface& working) {
+  const Placement& placement = task.source.placement;
+  task.progress.stage("base domain");
+  task.watch.start("base");
+  working = make_working_surface(task.source.repaired, placement, kFacesAQuad * (4 * std::max(kLikelyCubes, tower.cubes) + 1));
+  for (Vec3& p : tower.nodes) p = placement.to_unit(p);
+  PatchedSurface base = grow_boundary_tower(working.mesh, tower, task.progress.part(0.05, 0.2));
+  task.progress.stage("map");
+  task.watch.start("map");
+  return map_to_base(working.mesh, std::move(base), script_over({}, plan), task.progress.part(0.2, 0.45));
+}
+
+// A base on four points of the boundary. From then on the plan has its quads.
+Candidate grow(const RemeshTask& task, const Plan& plan) {
+  try {
+    WorkingSurface working;
+    BaseMap map = map_to_tower(task, *plan.tower, plan, working);
+    Plan::Origin origin;
+    origin.surface = task.source.fingerprint;
+    origin.tower = plan.tower;
+    return assemble_candidate(task, working, std::move(map), origin, plan.regions);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::Internal) throw;
+    throw Error(ErrorCode::Unsupported, std::string("no map to a chain of cubes on the boundary is found: ") + e.what());
+  }
+}
+
+// As it was made on the surface that the plan was made on; nothing if this is another one, or the base was changed by hand.
+std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
+  if (!plan.origin || plan.origin->surface != task.source.fingerprint) return std::nullopt;
+  try {
+    WorkingSurface working;
+    BaseMap map;
+    if (plan.origin->tower) {
+      map = map_to_tower(task, *plan.origin->tower, plan, working);
+    } else {
+      const BaseDomain base = make_base(task, *plan.origin, working);
+      map = map_to_base(working.mesh, base, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
+    }
+    Candidate c = assemble_candidate(task, working, std::move(map), plan.origin, plan.regions);
+    const LayoutOutline made = plan_from_json(c.plan).base;
+    if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;
+    return c;
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::Internal) throw;
+    return std::nullopt;
+  }
+}
+
+Candidate lay_out(const RemeshTask& task, const Plan& plan) {
+  const Placement& placement = task.source.placement;
+  task.progress.stage("base domain");
+  task.watch.start("base");
+  const WorkingSurface working =
+      make_working_surface(task.source.repaired, placement, kFacesAQuad * static_cast<std::int64_t>(plan.base.quads.size()));
+  LayoutOutline outline = plan.base;
+  const auto to_unit = [&](const Vec3& p) { return placement.to_unit(p); };
+  move_outline(outline, to_unit);
+  const TransferredLayout laid = transfer_layout(working.mesh, outline, task.progress.part(0.05, 0.2));
+  if (!laid.failure.empty()) throw Error(ErrorCode::InvalidInput, "the plan's base cannot be laid out on this surface: " + laid.failure);
+  task.progress.stage("map");
+  task.watch.start("map");
+  LayoutScript script = script_over({}, plan);
+  move_outlines(script.levels, to_unit);
+  for (LayoutScript::Level& level : script.levels)
+    for (LayoutScript::Edit& edit : level.edits) edit.even_quads = 0;
+  try {
+    BaseMap map = map_to_base(working.mesh, to_patched_surface(laid.layout), script, task.progress.part(0.2, 0.45));
+    return assemble_candidate(task, working, std::move(map), std::nullopt, plan.regions);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::Internal) throw;
+    throw Error(ErrorCode::Unsupported, std::string("no map to the plan's quads is found on this surface: ") + e.what());
+  }
+}
+
+}  // namespace
+
+Candidate planned_candidate(const RemeshTask& task, const Plan& plan) {
+  const RemeshOptions& options = task.options;
+  std::optional<Candidate> again = make_again(task, plan);
+  Candidate c = again ? std::move(*again) : plan.tower ? grow(task, plan) : lay_out(task, plan);
+  // What was asked for is what was done, word for word; a chain of cubes alone has become quads.
+  if (again || !plan.tower) c.plan = options.plan;
+  const Budget budget = plan_budget(options, task.source, {});
+  const std::int64_t euler = task.source.topology.euler;
+  c.levels = budget.levels;
+  if (options.refinement == Refinement::Uniform && options.levels < 0)
+    c.levels = levels_within(budget.vertices, c.finest, c.finest_quads, euler, c.finest_boundary_sides);
+  const std::int64_t needed = uniform_vertices(c.finest_quads, euler, c.finest_boundary_sides, std::max(c.finest, c.levels) - c.finest);
+  if (options.vertices > 0 && options.refinement == Refinement::Uniform && needed > options.vertices)
+    throw Error(ErrorCode::InvalidInput,
+                "the plan needs at least " + std::to_string(needed) + " vertices, more than the " + std::to_string(options.vertices) + " allowed");
+  return c;
+}
+
+}  // namespace hybrid_mesh

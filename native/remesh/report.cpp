@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/report.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "hierarchy/stretch.h"
+#include "remesh/quality.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json operations_of(const HybridMesh& hierarchy, int level) {
+  Json list = Json::array();
+  for (int i = 0; i < hierarchy.operation_count(); ++i) {
+    const HybridMesh::Operation& op = hierarchy.operation(i);
+    if (op.repatch.level == level)
+      list.push_back({{"kind", op.repatch.kind}, {"removed_quads", op.repatch.removed.size()}, {"new_quads", op.roots.size()}});
+  }
+  return list;
+}
+
+Json describe_input(const PolygonSoup& input, const Source& source) {
+  const RepairReport& repaired = source.repairs;
+  Json r;
+  r["merged_points"] = repaired.merged_points;
+  r["isolated_points"] = repaired.isolated_points;
+  r["duplicate_faces"] = repaired.duplicate_faces;
+  r["degenerate_faces"] = repaired.degenerate_faces;
+  r["reoriented_faces"] = repaired.reoriented_faces;
+  r["nonmanifold_edges"] = repaired.nonmanifold_edges;
+  r["nonmanifold_vertices"] = repaired.nonmanifold_vertices;
+  r["one_sided_cuts"] = repaired.one_sided_cuts;
+  r["dropped_components"] = repaired.dropped_components;
+  return {{"vertices", input.points.size()},          {"faces", input.polygon_count()},
+          {"components", source.topology.components}, {"boundary_loops", source.topology.boundary_loops},
+          {"genus", source.topology.genus},           {"repaired", r}};
+}
+
+// Irregular vertices of the final mesh, by what made them.
+Json irregular_counts(const Candidate& c) {
+  std::int64_t of_base = 0, of_operations = 0, of_transitions = 0;
+  for (const VertexId id : irregular_names(c.final_mesh)) {
+    if (id.kind() == VertexId::Kind::Free && id.index() < c.hierarchy.base_vertex_count())
+      ++of_base;
+    else
+      ++(std::binary_search(c.finest_irregular.begin(), c.finest_irregular.end(), id) ? of_operations : of_transitions);
+  }
+  return {{"base", of_base}, {"operations", of_operations}, {"transitions", of_transitions}};
+}
+
+double regular_fraction(const Candidate& c) {
+  const HybridMesh& h = c.hierarchy;
+  std::int64_t inserted = h.base_count();
+  for (int i = 0; i < h.operation_count(); ++i) inserted += static_cast<std::int64_t>(h.operation(i).roots.size());
+  // Quads where sizes meet are neither regular nor inserted.
+  std::int64_t regular = 0;
+  for (const std::int32_t node : c.final_mesh.node) {
+    bool transition = false;
+    for (int side = 0; side < 4; ++side) transition |= h.has_finer_neighbour(node, side);
+    regular += !transition;
+  }
+  return 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, regular));
+}
+
+// What was asked for and could not be had.
+Json warnings(const RemeshOptions& options, const Candidate& c) {
+  Json list = Json::array();
+  if (options.error > 0 && c.distance.l2 > options.error)
+    list.push_back("the error bound of " + scientific(options.error) + " is not met: the L2 distance is " + scientific(c.distance.l2));
+  return list;
+}
+
+}  // namespace
+
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2e", value);
+  return text;
+}
+
+Json describe_level(const HybridMesh& hierarchy, int level, const QuadMesh& mesh, const SurfaceDistance& d) {
+  const TopologySummary t = summarize_topology(to_soup(mesh));
+  const LevelStretch s = level_stretch(hierarchy, mesh);
+  std::vector<double> sorted = s.stretch;
+  std::sort(sorted.begin(), sorted.end());
+  const auto at = [&](double p) { return sorted.empty() ? 0.0 : sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * sorted.size()))]; };
+  const std::vector<char> irregular = irregular_vertices(mesh);
+  return {{"level", level},
+          {"vertices", mesh.points.size()},
+          {"quads", quad_quality(mesh).quads},
+          {"genus", t.genus},
+          {"components", t.components},
+          {"boundary_loops", t.boundary_loops},
+          {"l2", d.l2},
+          {"hausdorff", d.hausdorff},
+          {"stretch", {{"p05", at(0.05)}, {"p50", at(0.5)}, {"p95", at(0.95)}, {"max", sorted.empty() ? 0.0 : sorted.back()}}},
+          {"irregular_vertices", std::count(irregular.begin(), irregular.end(), 1)},
+          {"irregular_ops", operations_of(hierarchy, level)}};
+}
+
+Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& c) {
+  const TopologySummary t = summarize_topology(to_soup(c.final_mesh)), &topology = task.source.topology;
+  if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology.components ||
+      t.boundary_loops != topology.boundary_loops || t.euler != topology.euler)
+    throw Error(ErrorCode::Internal, "the final mesh does not have the surface's topology");
+  const SurfaceDistance& d = c.distance;
+  const QuadQuality q = quad_quality(c.final_mesh);
+  Json report;
+  report["input"] = describe_input(input, task.source);
+  report["topology"] = {{"loops", Json::array()}, {"tubes", Json::array()}};
+  report["base"] = {{"quads", c.base_quads}, {"vertices", c.base_vertices}};
+  report["levels"] = c.level_reports;
+  report["final"] = {{"vertices", c.final_mesh.points.size()},
+                     {"quads", q.quads},
+                     {"triangles", q.triangles},
+                     {"l2", d.l2},
+                     {"hausdorff", d.hausdorff},
+                     {"boundary_hausdorff", d.boundary_hausdorff < 0 ? Json(nullptr) : Json(d.boundary_hausdorff)},
+                     {"genus", t.genus},
+                     {"components", t.components},
+                     {"boundary_loops", t.boundary_loops},
+                     {"regular_fraction", regular_fraction(c)},
+                     {"irregular_vertices", irregular_counts(c)},
+                     {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
+  if (task.options.error > 0) report["final"]["error_bound_met"] = d.l2 <= task.options.error;
+  report["warnings"] = warnings(task.options, c);
+  return report;
+}
+
+}  // namespace hybrid_mesh

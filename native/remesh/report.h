@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "remesh/candidate.h"
+
+namespace hybrid_mesh {
+
+// An entry of the report's "levels".
+nlohmann::ordered_json describe_level(const HybridMesh& hierarchy, int level, const QuadMesh& mesh, const SurfaceDistance& distance);
+
+// The report of a finished candidate, without file name, settings, seconds and memory. Throws Error{Internal} if the final mesh does not have the
+// surface's topology.
+nlohmann::ordered_json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& candidate);
+
+// As messages write errors: 1.23e-04.
+std::string scientific(double value);
+
+}  // namespace hybrid_mesh

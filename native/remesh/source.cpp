@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/source.h"
+
+#include "surface/fingerprint.h"
+
+namespace hybrid_mesh {
+namespace {
+
+std::string describe(const RepairReport& r) {
+  std::string text;
+  const auto add = [&](std::int64_t n, const char* what) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+  };
+  add(r.merged_points, "points to merge");
+  add(r.isolated_points, "isolated points");
+  add(r.duplicate_faces, "duplicate faces");
+  add(r.degenerate_faces, "degenerate faces");
+  add(r.reoriented_faces, "misoriented faces");
+  add(r.nonmanifold_edges, "non-manifold edges");
+  add(r.nonmanifold_vertices, "non-manifold vertices");
+  add(r.one_sided_cuts, "one-sided edges");
+  add(r.dropped_components, "components to drop");
+  return text;
+}
+
+}  // namespace
+
+Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch) {
+  progress.stage("repair");
+  watch.start("repair");
+  Source source;
+  RepairOptions repair_options;
+  repair_options.drop_components = options.drop_components;
+  source.repaired = repair(input, repair_options, source.repairs, progress);
+  if (options.strict && source.repairs.changed())
+    throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(source.repairs));
+  source.topology = summarize_topology(to_soup(source.repaired));
+  source.placement = placement_of(source.repaired.points);
+  source.fingerprint = fingerprint(source.repaired);
+  PolygonSoup unit = input;
+  for (Vec3& p : unit.points) p = source.placement.to_unit(p);
+  source.reference = std::make_unique<const DistanceReference>(unit);
+  watch.stop();
+  return source;
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/context.h"
+#include "remesh/remesh.h"
+#include "remesh/stopwatch.h"
+#include "remesh/working_surface.h"
+#include "surface/distance.h"
+#include "surface/topology_summary.h"
+
+namespace hybrid_mesh {
+
+// What is remeshed, read and repaired once for all candidates.
+struct Source {
+  TriangleSurface repaired;  // where the input stands
+  RepairReport repairs;
+  TopologySummary topology;  // of `repaired`
+  Placement placement;       // that brings it to unit size
+  std::string fingerprint;
+  std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
+};
+
+// What every step of a remesh reads, and where it tells how far it is.
+struct RemeshTask {
+  const RemeshOptions& options;
+  const Source& source;
+  const Progress& progress;
+  Stopwatch& watch;
+};
+
+// Throws Error{InvalidInput} where strict mode refuses repairs.
+Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);
+
+}  // namespace hybrid_mesh
