@@ -10,8 +10,9 @@ namespace hybrid_mesh {
 void bind_errors(pybind11::module_& module);
 void bind_mesh_io(pybind11::module_& module);
 void bind_hierarchy(pybind11::module_& module);
-void bind_subdivision(pybind11::module_& module);  // a method of bind_hierarchy's class
-void bind_modelling(pybind11::module_& module);    // the same
+void bind_subdivision(pybind11::module_& module);    // a method of bind_hierarchy's class
+void bind_modelling(pybind11::module_& module);      // the same
+void bind_region_update(pybind11::module_& module);  // the same
 void bind_remesh(pybind11::module_& module);
 void bind_job(pybind11::module_& module);
 void bind_drawn_layout(pybind11::module_& module);

@@ -49,6 +49,21 @@ class PythonHierarchy {
     shared_->sources.reset();
   }
 
+  // The hierarchy as it is now, and its plan_root.
+  std::pair<std::shared_ptr<const HybridMesh>, std::vector<int>> snapshot() const {
+    const std::lock_guard lock(shared_->mutex);
+    return {shared_->mesh, shared_->plan_root};
+  }
+  // Puts another hierarchy in the place of `before`, a snapshot; returns false, and does nothing, if it has been replaced meanwhile.
+  bool replace(const std::shared_ptr<const HybridMesh>& before, std::shared_ptr<const HybridMesh> mesh, std::vector<int> plan_root) {
+    const std::lock_guard lock(shared_->mutex);
+    if (shared_->mesh != before) return false;
+    shared_->mesh = std::move(mesh);
+    shared_->plan_root = std::move(plan_root);
+    shared_->sources.reset();
+    return true;
+  }
+
   // The mesh that make(const HybridMesh&) takes out of the hierarchy, with what Blender shows of it: no other thread changes the hierarchy in
   // between.
   template <typename Make>

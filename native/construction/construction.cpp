@@ -56,6 +56,8 @@ Construction::Construction(HybridMesh hierarchy, const std::vector<int>& root_nu
       root_number_.push_back({n, root_numbers[n]});
       roots = std::max(roots, root_numbers[n] + 1);
     }
+  for (int q = 0; q < mesh_.base_count(); ++q)
+    if (!mesh_.map(q)) throw Error(ErrorCode::InvalidInput, "the hierarchy has no maps to the surface any more: nothing can be laid out anew");
   QuadGraph graph;
   std::vector<QuadAddress> addresses;
   std::map<VertexId, int> number;
@@ -70,7 +72,7 @@ Construction::Construction(HybridMesh hierarchy, const std::vector<int>& root_nu
     graph.nodes.push_back(corners);
     graph.neighbours.push_back(neighbours);
     const int owner = mesh_.map_owner(n);
-    if (owner < 0) throw Error(ErrorCode::InvalidInput, "the hierarchy has no maps to the surface any more: nothing can be laid out anew");
+    if (owner < 0) throw Error(ErrorCode::InvalidInput, "a quad of the hierarchy has no map to the surface: nothing can be laid out anew");
     const HybridMesh::Square square = mesh_.square_in(n, owner);
     maps_.push_back({mesh_.shared_map(owner), {square.u, square.v, square.width}});
     QuadAddress address{root_numbers[mesh_.root(n)], 1};
@@ -81,7 +83,12 @@ Construction::Construction(HybridMesh hierarchy, const std::vector<int>& root_nu
   }
   graph.node_count = static_cast<int>(number.size());
   quads_ = AddressedGraph(std::move(graph), std::move(addresses), roots);
-  for (int q = 0; q < mesh_.base_count(); ++q) area_ += area_of(*mesh_.map(q));
+  std::vector<Vec3> points;
+  for (int q = 0; q < mesh_.base_count(); ++q) {
+    area_ += area_of(*mesh_.map(q));
+    points.insert(points.end(), mesh_.map(q)->positions.begin(), mesh_.map(q)->positions.end());
+  }
+  placement_ = placement_of(points);
   begin_level();
 }
 

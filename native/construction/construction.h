@@ -16,7 +16,7 @@ namespace hybrid_mesh {
 // addresses, reports and plans are read off it.
 class Construction {
  public:
-  // `area`: of the surface that the quads are mapped to.
+  // `area`: of the surface that the quads are mapped to, which is of unit size.
   Construction(const QuadGraph& base, double area);
   // A hierarchy with its maps and the state of one of its levels, which is refined to that level everywhere; `root_numbers`: of its root quads in
   // addresses, by node. Throws Error{InvalidInput} if a finer level has operations or there is a quad without a map.
@@ -24,7 +24,8 @@ class Construction {
 
   int level() const { return level_; }
   const AddressedGraph& quads() const { return quads_; }  // of the level, after its edits so far
-  LevelState state() const { return {quads_.graph(), maps_, area_}; }
+  int node(int patch) const { return nodes_[patch]; }     // of the hierarchy; before the level's first edit, and once closed
+  LevelState state() const { return {quads_.graph(), maps_, area_, placement_}; }
 
   // Edits of disjoint regions, all named by the quads before any of them; their quads' maps are left to set_map(). Throws Error{Internal} where there
   // are no such quads.
@@ -63,7 +64,8 @@ class Construction {
   int level_ = 0;
   AddressedGraph quads_;
   std::vector<QuadMap> maps_;  // per patch; without a map until one is set
-  double area_ = 0;
+  double area_ = 0;            // see LevelState
+  Placement placement_;
   std::vector<std::vector<LayoutScript::Edit>> edits_;
   std::vector<std::pair<int, int>> root_number_;  // node, number
   bool closed_ = false;

@@ -6,7 +6,7 @@
 namespace hybrid_mesh {
 
 LevelState quadrisected(const LevelState& state) {
-  LevelState finer{quadrisected(state.quads), {}, state.area};
+  LevelState finer{quadrisected(state.quads), {}, state.area, state.placement};
   for (const QuadMap& m : state.maps)
     for (int k = 0; k < 4; ++k) finer.maps.push_back({m.map, m.square.quadrant(k)});
   return finer;

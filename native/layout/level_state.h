@@ -7,6 +7,7 @@
 
 #include "layout/layout_edit.h"
 #include "parameterization/map_clipping.h"
+#include "surface/placement.h"
 
 namespace hybrid_mesh {
 
@@ -20,7 +21,8 @@ struct QuadMap {
 struct LevelState {
   QuadGraph quads;
   std::vector<QuadMap> maps;  // per quad
-  double area = 0;            // of the surface
+  double area = 0;            // of the surface where the maps have it
+  Placement placement;        // that brings the maps to unit size: operations are as good wherever the surface stands and however large it is
 };
 
 // The next level, before any operation.

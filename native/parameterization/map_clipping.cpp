@@ -12,6 +12,8 @@
 namespace hybrid_mesh {
 namespace {
 
+constexpr double kSnap = 1e-13;  // of the map's unit square: what rounding moves a crossing by, and some
+
 // A map's triangles while they are cut along lines u = c and v = c. Which side of a line a vertex is on is exact, since c is a number that a double
 // holds; what is cut gets a vertex exactly on the line, the same for both triangles of an edge.
 class MapCutting {
@@ -41,7 +43,10 @@ class MapCutting {
     positions_ = map_.positions;
   }
 
-  void cut(int axis, double c) {
+  // `across`: the lines of the other axis, along which the pieces are cut as well. Where an edge runs through a crossing of lines, but for rounding,
+  // its point is the crossing.
+  void cut(int axis, double c, const std::set<double>& across) {
+    across_ = &across;
     std::unordered_map<std::uint64_t, int> crossing;  // by the ends of an edge
     const auto side = [&](int v) { return uv_[v][axis] < c ? -1 : uv_[v][axis] > c ? 1 : 0; };
     std::vector<Triangle> out;
@@ -142,6 +147,8 @@ class MapCutting {
     if (fresh) {
       Vec2 uv = (1 - along) * uv_[a] + along * uv_[b];
       uv[axis] = c;
+      const auto line = across_->lower_bound(uv[1 - axis] - kSnap);
+      if (line != across_->end() && *line <= uv[1 - axis] + kSnap) uv[1 - axis] = *line;
       // On a side of the map it stays there.
       if (uv_[a][1 - axis] == uv_[b][1 - axis]) uv[1 - axis] = uv_[a][1 - axis];
       uv_.push_back(uv);
@@ -153,6 +160,7 @@ class MapCutting {
   }
 
   const PatchMap& map_;
+  const std::set<double>* across_ = nullptr;
   std::vector<Triangle> triangles_;
   std::vector<Vec2> uv_;
   std::vector<Vec3> positions_;
@@ -172,7 +180,7 @@ std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSqua
   }
   for (int axis = 0; axis < 2; ++axis)
     for (const double c : lines[axis])
-      if (c > 0 && c < 1) cutting.cut(axis, c);
+      if (c > 0 && c < 1) cutting.cut(axis, c, lines[1 - axis]);
   std::vector<PatchMap> parts;
   for (const DyadicSquare& s : squares) parts.push_back(cutting.part(s));
   return parts;

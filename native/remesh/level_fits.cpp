@@ -13,32 +13,6 @@
 namespace hybrid_mesh {
 namespace {
 
-FitOptions final_fit() {
-  FitOptions options;
-  options.rounds = 2;
-  // Only where quads are as good as square: elsewhere the shape would suffer more than the distance gains.
-  options.square_smoothness = 0.012;
-  options.poor = 0.96;
-  options.square = 0.985;
-  return options;
-}
-
-// Of a level whose quads are much larger than the shape's features: held closer to where the map puts them, or corners overshoot tips.
-FitOptions coarse_fit() {
-  FitOptions options;
-  options.rounds = 1;
-  options.tangential = 0.1;
-  return options;
-}
-
-void fit(QuadMesh& mesh, const HybridMesh& hierarchy, const FitOptions& fit_options, int turns, int level, const Progress& progress) {
-  SurfaceFitOptions options;
-  options.first = fit_options;
-  options.turns = turns;
-  options.finest = level;
-  fit_to_surface(mesh, hierarchy, options, progress);
-}
-
 // The vertices of a fitted mesh by their names.
 class FittedVertices {
  public:
@@ -65,12 +39,32 @@ class FittedVertices {
 
 }  // namespace
 
+SurfaceFitOptions level_fit(bool finest, int level) {
+  SurfaceFitOptions options;
+  options.finest = level;
+  FitOptions& fit = options.first;
+  if (finest) {
+    options.turns = 2;
+    fit.rounds = 2;
+    // Only where quads are as good as square: elsewhere the shape would suffer more than the distance gains.
+    fit.square_smoothness = 0.012;
+    fit.poor = 0.96;
+    fit.square = 0.985;
+  } else {
+    options.turns = 1;
+    fit.rounds = 1;
+    // Held closer to where the map puts them, or corners overshoot tips.
+    fit.tangential = 0.1;
+  }
+  return options;
+}
+
 void fit_uniform(const RemeshTask& task, Candidate& c, int level) {
   task.progress.stage("fit");
   task.watch.start("fit");
   c.hierarchy.refine_uniform(std::max(level, c.finest));
   c.final_mesh = c.hierarchy.level_mesh(level);
-  fit(c.final_mesh, c.hierarchy, final_fit(), 2, level, task.progress.part(0.6, 0.8));
+  fit_to_surface(c.final_mesh, c.hierarchy, level_fit(true, level), task.progress.part(0.6, 0.8));
 }
 
 void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
@@ -98,8 +92,12 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
     const Progress part = task.progress.part(0.8, last ? 0.95 : 0.8);
     QuadMesh& mesh = c.level_meshes[j];
     mesh = last ? c.final_mesh : c.hierarchy.level_mesh(j);
-    // A level that is nearly the final mesh begins with that and has little left to do.
-    if (!last) fit(mesh, c.hierarchy, coarse_fit(), fitted.place(mesh) ? 0 : 1, j, part);
+    if (!last) {
+      SurfaceFitOptions options = level_fit(false, j);
+      // A level that is nearly the final mesh begins with that and has little left to do.
+      if (fitted.place(mesh)) options.turns = 0;
+      fit_to_surface(mesh, c.hierarchy, options, part);
+    }
     DistanceOptions samples;
     if (!last) samples.samples = 30000;
     const SurfaceDistance distance = task.source.reference->distance(to_soup(mesh), samples, part);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "remesh/candidate.h"
+#include "remesh/surface_fit.h"
 
 namespace hybrid_mesh {
 
@@ -13,5 +14,8 @@ void fit_adaptive(const RemeshTask& task, Candidate& candidate, std::int64_t ver
 
 // Fits and measures all levels, of which the last is the final mesh.
 void finish_levels(const RemeshTask& task, Candidate& candidate);
+
+// How a level is fitted: the finest one, or one whose quads are much larger than the shape's features.
+SurfaceFitOptions level_fit(bool finest, int level);
 
 }  // namespace hybrid_mesh

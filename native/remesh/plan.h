@@ -48,5 +48,7 @@ struct Plan {
 // JSON text. Throws Error{InvalidInput}, with the place in the text, for what is no plan.
 std::string to_json(const Plan& plan);
 Plan plan_from_json(const std::string& text);
+// One of a plan's "operations" by itself.
+Plan::Region plan_region_from_json(const std::string& text);
 
 }  // namespace hybrid_mesh

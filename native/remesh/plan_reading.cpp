@@ -317,4 +317,10 @@ Plan plan_from_json(const std::string& text) {
   return plan;
 }
 
+Plan::Region plan_region_from_json(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "the operation is not JSON");
+  return region_from_json(PlanEntry(json, "operation"));
+}
+
 }  // namespace hybrid_mesh

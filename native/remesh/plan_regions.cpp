@@ -37,12 +37,6 @@ class RegionRepatcher {
   }
 
  private:
-  int find(const std::string& address) const {
-    const int q = made_.quads().find(address);
-    if (q < 0) throw Error(ErrorCode::InvalidInput, "level " + std::to_string(made_.level()) + " has no quad " + address);
-    return q;
-  }
-
   void repatch(const Plan::Region& region) {
     if (region.level < finest_)
       throw Error(ErrorCode::InvalidInput,
@@ -53,13 +47,9 @@ class RegionRepatcher {
                     "level " + std::to_string(region.level) + " would have more than " + std::to_string(kMostPlanQuads) + " quads");
       made_.refine();
     }
-    RegionRepatch repatch;
-    for (const std::string& address : region.quads) repatch.patches.push_back(find(address));
-    if (!region.start_quad.empty()) repatch.start = {find(region.start_quad), region.start_side};
-    repatch.pattern = region.pattern;
+    RegionRepatch repatch = resolved(region, made_.quads());
     for (DrawnStroke& s : repatch.pattern.strokes)
       for (Vec3& p : s.points) p = placement_.to_unit(p);
-    repatch.buffer_rings = region.buffer_rings;
     made_.apply(repatch_region(made_.state(), repatch, progress_), kAfterRounds);
     finest_ = made_.level();
   }
@@ -71,6 +61,20 @@ class RegionRepatcher {
 };
 
 }  // namespace
+
+RegionRepatch resolved(const Plan::Region& region, const AddressedGraph& level) {
+  const auto find = [&](const std::string& address) {
+    const int q = level.find(address);
+    if (q < 0) throw Error(ErrorCode::InvalidInput, "level " + std::to_string(region.level) + " has no quad " + address);
+    return q;
+  };
+  RegionRepatch repatch;
+  for (const std::string& address : region.quads) repatch.patches.push_back(find(address));
+  if (!region.start_quad.empty()) repatch.start = {find(region.start_quad), region.start_side};
+  repatch.pattern = region.pattern;
+  repatch.buffer_rings = region.buffer_rings;
+  return repatch;
+}
 
 void repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement, const Progress& progress) {
   std::vector<std::size_t> order(regions.size());

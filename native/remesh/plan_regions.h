@@ -9,6 +9,9 @@
 
 namespace hybrid_mesh {
 
+// The quads that a region names, and how they are to be laid out. Throws Error{InvalidInput} for quads that the level does not have.
+RegionRepatch resolved(const Plan::Region& region, const AddressedGraph& level);
+
 // Lays out a plan's regions anew, coarse ones first, those of one level in their order. `made`: at the last level that has operations, all with maps;
 // of the surface brought to unit size by `placement`. Throws LayoutError with places in the input's space, Error{InvalidInput} with the place in the
 // plan, Error{Unsupported} if no map is found.

@@ -24,9 +24,12 @@ std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh
 
 void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFitOptions& options, const Progress& progress) {
   const SurfaceSamples samples(hierarchy, fit_sample_count(mesh.points.size()), options.finest);
-  std::vector<FitSample> on = samples.on(hierarchy, mesh);
+  fit_to_samples(mesh, samples.on(hierarchy, mesh), parameter_shares(hierarchy, mesh), options, progress);
+}
+
+void fit_to_samples(QuadMesh& mesh, std::vector<FitSample> on, const std::vector<double>& share, const SurfaceFitOptions& options,
+                    const Progress& progress) {
   const std::vector<char> boundary = boundary_vertices(mesh);
-  const std::vector<double> share = parameter_shares(hierarchy, mesh);
   FitOptions fit = options.first;
   fit_mesh(mesh, boundary, share, on, fit, progress);
   // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.

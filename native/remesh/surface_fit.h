@@ -19,6 +19,11 @@ std::int64_t fit_sample_count(std::size_t vertices);
 // The parameter area of the quads around each vertex of a mesh taken from the hierarchy: the `share` of fit_mesh.
 std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh);
 
+// Moves the vertices of a mesh, all but those of its boundary, to where it comes closest to the samples while its quads keep their shape. Lengths are
+// of a surface of unit size. `share`: see fit_mesh().
+void fit_to_samples(QuadMesh& mesh, std::vector<FitSample> samples, const std::vector<double>& share, const SurfaceFitOptions& options,
+                    const Progress& progress);
+
 // Moves the vertices of a mesh taken from the hierarchy, all but those of the boundary, to where the mesh comes closest to the surface under the
 // hierarchy's maps while its quads keep their shape.
 void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFitOptions& options, const Progress& progress);

@@ -49,9 +49,11 @@ std::vector<int> map_owners(const HybridMesh& hierarchy, int finest) {
 
 }  // namespace
 
-SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest) {
+SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest)
+    : SurfaceSamples(hierarchy, map_owners(hierarchy, finest), count, finest) {}
+
+SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, const std::vector<int>& owners, std::int64_t count, int finest) {
   double total = 0;
-  const std::vector<int> owners = map_owners(hierarchy, finest);
   const auto normal_of = [](const PatchMap& m, const std::array<int, 3>& t) {
     return Vec3((m.positions[t[1]] - m.positions[t[0]]).cross(m.positions[t[2]] - m.positions[t[0]]));
   };

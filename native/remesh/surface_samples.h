@@ -14,6 +14,8 @@ class SurfaceSamples {
  public:
   // About `count` of them; leaves finer than level `finest` count as one of that level.
   SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest);
+  // Of these nodes' maps alone.
+  SurfaceSamples(const HybridMesh& hierarchy, const std::vector<int>& owners, std::int64_t count, int finest);
   // As samples of a mesh taken from the hierarchy, each with a face of the node that it lies under.
   std::vector<FitSample> on(const HybridMesh& hierarchy, const QuadMesh& mesh) const;
   std::size_t size() const { return samples_.size(); }

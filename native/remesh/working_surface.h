@@ -5,18 +5,10 @@
 
 #include "parameterization/patch_map.h"
 #include "parameterization/patched_surface.h"
+#include "surface/placement.h"
 #include "surface/polygon_soup.h"
 
 namespace hybrid_mesh {
-
-// Centre and scale that bring a surface to a unit bounding-box diagonal around the origin.
-struct Placement {
-  Vec3 center = Vec3::Zero();
-  double diagonal = 1;
-  Vec3 to_unit(const Vec3& p) const { return (p - center) / diagonal; }
-  Vec3 from_unit(const Vec3& p) const { return center + diagonal * p; }
-};
-Placement placement_of(const std::vector<Vec3>& points);
 
 // The repaired surface as the base domain and the maps are built on it: placed, and with its faces split in four where it has too few for the quads
 // that are to be cut out of it (the same set of points).

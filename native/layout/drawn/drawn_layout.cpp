@@ -17,7 +17,7 @@
 #include "layout/drawn/curve_cleaning.h"
 #include "layout/drawn/point_grid.h"
 #include "layout/drawn/stroke_projection.h"
-#include "layout/drawn/surface_frame.h"
+#include "surface/placement.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -59,7 +59,7 @@ class LayoutMaker {
         strokes_(strokes),
         options_(options),
         progress_(progress),
-        frame_(surface.points),
+        frame_(placement_of(surface.points)),
         snap_(options.snap),
         unit_(frame_.to_unit(surface)),
         curves_(unit_, unit_.points),
@@ -474,7 +474,7 @@ class LayoutMaker {
   const std::vector<DrawnStroke>& strokes_;
   const DrawnLayoutOptions& options_;
   const Progress& progress_;
-  SurfaceFrame frame_;
+  Placement frame_;
   double snap_;
   TriangleSurface unit_;
   SurfaceCurves curves_;

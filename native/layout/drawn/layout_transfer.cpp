@@ -15,8 +15,8 @@
 #include "layout/curves/curve_tightening.h"
 #include "layout/curves/vertex_placing.h"
 #include "layout/drawn/quad_complex.h"
-#include "layout/drawn/surface_frame.h"
 #include "surface/closest_point.h"
+#include "surface/placement.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -34,7 +34,7 @@ class LayoutTracer {
         outline_(outline),
         progress_(progress),
         complex_(outline),
-        frame_(surface.points),
+        frame_(placement_of(surface.points)),
         unit_(frame_.to_unit(surface)),
         curves_(unit_, unit_.points) {}
 
@@ -398,7 +398,7 @@ class LayoutTracer {
   const LayoutOutline& outline_;
   const Progress& progress_;
   QuadComplex complex_;
-  SurfaceFrame frame_;
+  Placement frame_;
   TriangleSurface unit_;
   SurfaceCurves curves_;
   MeshComponents ours_, theirs_;

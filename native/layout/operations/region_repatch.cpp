@@ -66,6 +66,12 @@ LayoutEdit in_level(LayoutEdit edit, const LocalRegion& region) {
   return edit;
 }
 
+std::vector<DrawnStroke> unit_strokes(std::vector<DrawnStroke> strokes, const Placement& placement) {
+  for (DrawnStroke& s : strokes)
+    for (Vec3& p : s.points) p = placement.to_unit(p);
+  return strokes;
+}
+
 // The curves as an edit of the region, by the part's numbers.
 DrawnEdit draw(const PatchedSurface& surface, const LocalRegion& local, std::vector<DrawnStroke> strokes, const Progress& progress) {
   const PatchRegion& region = local.in_part;
@@ -136,15 +142,16 @@ double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<st
   return (smooth_map(charts, part, options, progress).energy - 1) * area;
 }
 
-}  // namespace
-
-MappedEdit repatch_region(const LevelState& state, const RegionRepatch& repatch, const Progress& progress) {
+MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& repatch, const Progress& progress) {
   const QuadGraph& level = state.quads;
   std::optional<PatchRegion> region = make_region(level, repatch.patches, repatch.start);
   if (!region)
     throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
-  const std::vector<int> quads = with_rings(level, repatch.patches, repatch.buffer_rings);
-  const std::vector<PatchMap> maps = maps_of(state, quads);
+  // One ring at least: sides that the new quads share with it follow its map.
+  const std::vector<int> quads = with_rings(level, repatch.patches, std::max(1, repatch.buffer_rings));
+  std::vector<PatchMap> maps = maps_of(state, quads);
+  for (PatchMap& map : maps)
+    for (Vec3& p : map.positions) p = state.placement.to_unit(p);
   const GluedMaps glued = glue_patch_maps(maps, part_of(level, quads));
   MappedSurface part = glued.mapped;
   progress(0.2);
@@ -158,11 +165,13 @@ MappedEdit repatch_region(const LevelState& state, const RegionRepatch& repatch,
   local.in_part = *make_region(part.surface, first, start);
 
   MappedEdit out;
-  const double scale = std::sqrt(static_cast<double>(level.patch_count()) / state.area);
-  for (const double e : patch_energies(part, scale, GlobalMapOptions().theta)) out.energy_before += e;
+  const double scale = state.placement.diagonal * std::sqrt(static_cast<double>(level.patch_count()) / state.area);
+  const std::vector<double> energies = patch_energies(part, scale, GlobalMapOptions().theta);
+  for (std::size_t k = 0; k < energies.size(); ++k)
+    if (repatch.buffer_rings > 0 || k < repatch.patches.size()) out.energy_before += energies[k];
   LayoutChange change;
   if (repatch.pattern.kind == RegionPattern::Kind::Drawn) {
-    DrawnEdit edit = draw(part.surface, local, repatch.pattern.strokes, progress.part(0.2, 0.4));
+    DrawnEdit edit = draw(part.surface, local, unit_strokes(repatch.pattern.strokes, state.placement), progress.part(0.2, 0.4));
     out.edit = in_level(edit.edit, local);
     change = apply_edit(part, std::move(edit));
   } else {
@@ -180,21 +189,43 @@ MappedEdit repatch_region(const LevelState& state, const RegionRepatch& repatch,
   for (std::size_t k = 0; k < quads.size(); ++k)
     if (change.patch[k] >= 0) number[change.patch[k]] = in_level.patch[quads[k]];
   for (std::size_t k = 0; k < change.added.size(); ++k) number[change.added[k]] = in_level.added[k];
-  std::vector<std::array<bool, 4>> held(number.size());
-  for (std::size_t q = 0; q < number.size(); ++q)
-    for (int i = 0; i < 4; ++i) held[q][i] = part.surface.neighbours[q][i].patch < 0 && after.neighbours[number[q]][i].patch >= 0;
 
-  ChartMesh charts(part.surface, part.corners);
+  std::vector<int> relaxed = change.added;
+  if (repatch.buffer_rings > 0) {
+    relaxed.resize(number.size());
+    std::iota(relaxed.begin(), relaxed.end(), 0);
+  }
+  const PatchedPart smoothed = part_of(part.surface, relaxed);
+  std::vector<std::array<Vec2, 3>> corners;
+  for (const int f : smoothed.face) corners.push_back(part.corners[f]);
+  std::vector<std::array<bool, 4>> held(relaxed.size());
+  for (std::size_t k = 0; k < relaxed.size(); ++k)
+    for (int i = 0; i < 4; ++i) held[k][i] = smoothed.surface.neighbours[k][i].patch < 0 && after.neighbours[number[relaxed[k]]][i].patch >= 0;
+
+  ChartMesh charts(smoothed.surface, corners);
   charts.scale = scale;
-  out.energy_after = relax(charts, part.surface, held, progress.part(0.5, 0.8));
-  std::vector<PatchMap> relaxed = extract_patch_maps(charts, part.surface, glued.mapped.surface.mesh.faces, progress.part(0.8, 1));
-  for (std::size_t q = 0; q < relaxed.size(); ++q) {
-    if (const char* defect = find_map_defect(relaxed[q]); *defect)
+  out.energy_after = relax(charts, smoothed.surface, held, progress.part(0.5, 0.8));
+  std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.mapped.surface.mesh.faces, progress.part(0.8, 1));
+  for (std::size_t k = 0; k < relaxed.size(); ++k) {
+    if (const char* defect = find_map_defect(fresh[k]); *defect)
       throw Error(ErrorCode::Internal, std::string("the map of a quad of the region: ") + defect);
-    glued.trace(relaxed[q]);
-    out.maps.push_back({number[q], std::move(relaxed[q])});
+    glued.trace(fresh[k]);
+    for (Vec3& p : fresh[k].positions) p = state.placement.from_unit(p);
+    out.maps.push_back({number[relaxed[k]], std::move(fresh[k])});
   }
   return out;
+}
+
+}  // namespace
+
+MappedEdit repatch_region(const LevelState& state, const RegionRepatch& region, const Progress& progress) {
+  try {
+    return repatch_in_unit_size(state, region, progress);
+  } catch (LayoutError& e) {
+    for (LayoutProblem& p : e.problems)
+      for (Vec3& w : p.where) w = state.placement.from_unit(w);
+    throw;
+  }
 }
 
 }  // namespace hybrid_mesh

@@ -27,7 +27,7 @@ struct RegionPattern {
 struct RegionRepatch {
   std::vector<int> patches;
   PatchSide start;        // the boundary side that begins at corner 0; patch -1: any
-  RegionPattern pattern;  // its strokes on a surface of unit size, as the level's map is
+  RegionPattern pattern;  // its strokes where the level's maps have the surface
   int buffer_rings = 1;   // so many rings of quads around are relaxed with the new ones; 0: none
 };
 

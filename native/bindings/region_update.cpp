@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Regions of a level that are laid out anew in a finished hierarchy.
+#include "remesh/region_update.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings/bindings.h"
+#include "bindings/conversions.h"
+#include "bindings/hierarchy.h"
+#include "bindings/job.h"
+
+namespace py = pybind11;
+
+namespace hybrid_mesh {
+namespace {
+
+struct Outcome {
+  int operation = -1;
+  double energy_before = 0, energy_after = 0;
+};
+
+Outcome repatch(PythonHierarchy hierarchy, const Plan::Region& region, Context& context) {
+  const auto [mesh, plan_root] = hierarchy.snapshot();
+  RegionUpdate update = repatch_hierarchy(*mesh, root_numbers(*mesh, plan_root), region, Progress(context));
+  if (!hierarchy.replace(mesh, std::make_shared<const HybridMesh>(std::move(update.hierarchy)), std::move(update.root_numbers)))
+    throw Error(ErrorCode::InvalidInput, "the hierarchy was changed while a region of it was laid out anew: nothing was done");
+  return {update.operation, update.energy_before, update.energy_after};
+}
+
+py::dict to_dict(const Outcome& outcome) {
+  py::dict result;
+  result["operation"] = outcome.operation;
+  result["energy_before"] = outcome.energy_before;
+  result["energy_after"] = outcome.energy_after;
+  return result;
+}
+
+// A dict as a plan has it, or its JSON text.
+Plan::Region region_from_python(const py::object& operation) {
+  const py::object text = py::isinstance<py::str>(operation) ? operation : py::module_::import("json").attr("dumps")(operation);
+  return plan_region_from_json(text.cast<std::string>());
+}
+
+constexpr const char* kRepatch = R"(Lays out quads of one level anew, and rebuilds what lies above them: at their cost alone.
+
+operation is one of a plan's "operations", a dict or JSON text: the level, the addresses of the quads, curves or a layout ("automatic", "cubes", "template"), buffer_rings. No finer level
+may have operations, and none of the quads may have been put in by another operation of the level. Returns a dict: operation, its number; energy_before and energy_after, of the maps of
+the region and of the rings around it beyond an isometry's, in quads of mean size: the region is better only where that has fallen. Raises InvalidInput, LayoutError or Unsupported with the
+reason if it cannot be done, and then nothing has changed.)";
+
+}  // namespace
+
+void bind_region_update(py::module_& module) {
+  using py::arg;
+  auto type = py::reinterpret_borrow<py::class_<PythonHierarchy>>(module.attr("Hierarchy"));
+  type.def(
+          "repatch",
+          [](PythonHierarchy& hierarchy, const py::object& operation) {
+            const Plan::Region region = region_from_python(operation);
+            return to_dict(run_interruptibly([&](Context& context) { return repatch(hierarchy, region, context); }));
+          },
+          arg("operation"), kRepatch)
+      .def(
+          "start_repatch",
+          [](const PythonHierarchy& hierarchy, const py::object& operation) {
+            auto outcome = std::make_shared<Outcome>();  // written by the job's thread until it is done
+            return start_job(
+                [hierarchy, region = region_from_python(operation), outcome](Context& context) { *outcome = repatch(hierarchy, region, context); },
+                [outcome]() -> py::object { return to_dict(*outcome); });
+          },
+          arg("operation"), "Starts repatch() as a Job, whose result is what repatch() returns.");
+}
+
+}  // namespace hybrid_mesh
