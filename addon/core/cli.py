@@ -10,7 +10,7 @@ import sys
 from . import inputs as input_files
 from . import plans
 from .batch import Batch, BatchOptions, OutputError
-from .native import explain
+from .native import NativeMissing, explain
 from .process import Processes, WorkerFailed, bpy_available
 from .settings import FACES, RemeshSettings, SettingsError
 from .version import VERSION
@@ -46,6 +46,9 @@ def run(argv):
     except (WrongArguments, SettingsError, input_files.InputsError) as error:
         _fail(str(error))
         return WRONG_ARGUMENTS
+    except NativeMissing as error:
+        _fail(str(error))
+        return FAILED
     except KeyboardInterrupt:
         _fail("interrupted")
         return INTERRUPTED

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "base/limits.h"
 #include "layout/regions/region_pattern.h"
 
 namespace hybrid_mesh {
@@ -20,8 +21,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "hybrid-mesh plan";
 constexpr int kVersion = 1;
-constexpr int kMostLevels = 12;
-constexpr int kMostCubes = 1000;  // of a tower
 constexpr const char* kAutomatic = "automatic";
 
 // A value of the plan and its place in it, for messages.
@@ -129,7 +128,7 @@ BoundaryTower tower_from_json(const Entry& entry) {
   const Entry nodes = entry.at("boundary_nodes");
   if (!nodes.is(kAutomatic))
     for (const Entry& p : nodes.list(4)) tower.nodes.push_back(p.point());
-  if (entry.has("cubes")) tower.cubes = static_cast<int>(entry.at("cubes").integer(0, kMostCubes));
+  if (entry.has("cubes")) tower.cubes = static_cast<int>(entry.at("cubes").integer(0, limits::most_cubes));
   return tower;
 }
 
@@ -219,7 +218,7 @@ LayoutEdit edit_from_json(const Entry& entry, const PlanLayout& layout) {
   const std::optional<PatchRegion> region = make_region(layout.layout(), patches, start);
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
   const std::string kind = entry.at("kind").text();
-  if (kind == "add_cubes") return tower_edit(layout.layout(), *region, static_cast<int>(entry.at("height").integer(1, kMostCubes)));
+  if (kind == "add_cubes") return tower_edit(layout.layout(), *region, static_cast<int>(entry.at("height").integer(1, limits::most_cubes)));
   if (kind != "repatch") entry.at("kind").refuse("must be \"repatch\" or \"add_cubes\"");
   LayoutEdit edit;
   edit.patches = region->patches;
@@ -352,7 +351,7 @@ std::vector<LayoutScript::Level> levels_from_json(const Entry& entry, const Layo
   std::vector<LayoutScript::Level> levels;
   for (const Entry& e : entry.list()) {
     e.only({"level", "vertices", "vertices_a_quad", "operations"});
-    const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, kMostLevels));
+    const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, limits::most_levels));
     while (levels.size() < level) {
       if (4 * static_cast<std::int64_t>(layout.addresses().size()) > kMostPlanQuads)
         e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
@@ -463,18 +462,18 @@ Plan::Region region_from_json(const Entry& entry) {
     keys.insert("curves");
   }
   entry.only(keys);
-  r.level = static_cast<int>(entry.at("level").integer(1, kMostLevels));
+  r.level = static_cast<int>(entry.at("level").integer(1, limits::most_levels));
   for (const Entry& q : entry.at("quads").list()) r.quads.push_back(q.text());
   if (r.quads.empty()) entry.refuse("has no quads");
   if (entry.has("curves")) r.pattern.strokes = strokes_from_json(entry.at("curves"));
-  if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, kMostCubes));
+  if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, limits::most_cubes));
   if (r.pattern.kind == Pattern::Template) {
     const std::vector<Entry> start = entry.at("start").list(2), quads = entry.at("new_quads").list();
     r.start_quad = start[0].text();
     r.start_side = start[1].index(4);
     for (const Entry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
   }
-  if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, 100));
+  if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, limits::most_buffer_rings));
   return r;
 }
 

@@ -15,6 +15,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/limits.h"
 #include "hierarchy/stretch.h"
 #include "layout/search/base_map.h"
 #include "parameterization/patch_extraction.h"
@@ -96,7 +97,7 @@ class Remesher {
     const auto refuse = [](const std::string& what) { throw Error(ErrorCode::InvalidInput, what); };
     if (options_.vertices < 0) refuse("vertices must not be negative");
     if (!(options_.error >= 0)) refuse("error must not be negative");
-    if (options_.levels > 12) refuse("levels must be at most 12");
+    if (options_.levels > limits::most_levels) refuse("levels must be at most " + std::to_string(limits::most_levels));
     if (!(options_.drop_components >= 0 && options_.drop_components < 1)) refuse("drop_components must be in [0, 1)");
     if (options_.base == BaseSize::Given && options_.base_quads < 1) refuse("base_quads must be positive");
   }
@@ -179,7 +180,7 @@ class Remesher {
         // With a base of any size the number of levels is what makes a mesh of the size asked for.
         if (options_.base == BaseSize::Minimal && options_.refinement == Refinement::Uniform && options_.levels < 0 && options_.error == 0) {
           budget_.levels = finest_.level;
-          while (budget_.levels < 12 && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
+          while (budget_.levels < limits::most_levels && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
         }
         const std::int64_t needed = vertices_at(std::max(finest_.level, budget_.levels));
         const bool bound = options_.vertices > 0 && options_.refinement == Refinement::Uniform;
@@ -324,7 +325,7 @@ class Remesher {
     if (!make_again()) plan_->tower ? grow() : lay_out();
     if (options_.refinement == Refinement::Uniform && options_.levels < 0) {
       budget_.levels = finest_.level;
-      while (budget_.levels < 12 && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
+      while (budget_.levels < limits::most_levels && vertices_at(budget_.levels + 1) <= budget_.vertices) ++budget_.levels;
     }
     const std::int64_t needed = vertices_at(std::max(finest_.level, budget_.levels));
     if (options_.vertices > 0 && options_.refinement == Refinement::Uniform && needed > options_.vertices)
@@ -580,7 +581,7 @@ class Remesher {
   // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.
   Attempt climb() {
     const bool one_level = options_.levels >= 0;
-    const int last = options_.vertices > 0 || one_level ? budget_.levels : 12;
+    const int last = options_.vertices > 0 || one_level ? budget_.levels : limits::most_levels;
     for (int level = one_level ? last : 0;; ++level) {
       fit_level(level);
       const Attempt made = measured_attempt();

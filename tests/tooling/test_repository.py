@@ -122,6 +122,11 @@ def test_core_imports_no_blender():
     assert wrong == {}
 
 
+def test_the_python_module_has_every_limit():
+    limits = re.findall(r"^inline constexpr \S+ (\w+) =", text_of("native/base/limits.h"), re.MULTILINE)
+    assert limits == re.findall(r'^  all\["(\w+)"\] = limits::\1;', text_of("native/bindings/limits.cpp"), re.MULTILINE) != []
+
+
 def test_only_compat_asks_for_the_version():
     addon = [path for path in files() if path.parts[0] == "addon" and path.suffix == ".py" and path.name != "compat.py"]
     assert [str(path) for path in addon if "bpy.app.version" in text_of(path)] == []
