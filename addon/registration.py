@@ -7,6 +7,7 @@ from . import compat, jobs
 from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
 from .features.layouts import properties as layout_properties
+from .features.layouts import region_operator
 from .features.levels import operators as level_operators
 from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
@@ -29,7 +30,7 @@ CLASSES = (
     layout_operators.HYBRID_MESH_OT_show_problem,
     layout_operators.HYBRID_MESH_OT_remesh_layout,
     layout_operators.HYBRID_MESH_OT_remesh_boundary,
-    layout_operators.HYBRID_MESH_OT_repatch_region,
+    region_operator.HYBRID_MESH_OT_repatch_region,
     layout_panel.HYBRID_MESH_UL_problems,
     remesh_panel.HYBRID_MESH_PT_remesh,
     remesh_panel.HYBRID_MESH_PT_advanced,
