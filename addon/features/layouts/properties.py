@@ -113,11 +113,4 @@ def _kind(obj):
     return obj.hybrid_mesh_layout.kind if obj.is_property_set("hybrid_mesh_layout") else "NONE"
 
 
-def register():
-    bpy.types.Object.hybrid_mesh_layout = PointerProperty(type=HybridMeshLayout)
-    bpy.types.Scene.hybrid_mesh_region = PointerProperty(type=HybridMeshRegion)
-
-
-def unregister():
-    del bpy.types.Scene.hybrid_mesh_region
-    del bpy.types.Object.hybrid_mesh_layout
+PROPERTIES = ((bpy.types.Object, "hybrid_mesh_layout", HybridMeshLayout), (bpy.types.Scene, "hybrid_mesh_region", HybridMeshRegion))

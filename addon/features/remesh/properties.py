@@ -3,7 +3,7 @@
 
 import bpy
 import numpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import settings as core
 from ...core.limits import limits
@@ -148,9 +148,4 @@ def draw_advanced(layout, properties):
     column.prop(properties, "threads")
 
 
-def register():
-    bpy.types.Scene.hybrid_mesh = PointerProperty(type=HybridMeshScene)
-
-
-def unregister():
-    del bpy.types.Scene.hybrid_mesh
+PROPERTIES = ((bpy.types.Scene, "hybrid_mesh", HybridMeshScene),)
