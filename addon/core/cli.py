@@ -69,8 +69,13 @@ class _Parser(argparse.ArgumentParser):
         raise WrongArguments(f"{message} ({self.prog} --help says more)")
 
 
-def remesh(arguments):
-    settings = RemeshSettings(
+def remesh_settings(options):
+    """The RemeshSettings that options of the command `remesh` stand for; raises WrongArguments or SettingsError."""
+    return _settings(_parser().parse_args(["remesh", "none", "--output", "none", *options]))
+
+
+def _settings(arguments):
+    return RemeshSettings(
         vertices=arguments.vertices or 0,
         error=arguments.error or 0.0,
         levels=-1 if arguments.levels is None else arguments.levels,
@@ -85,6 +90,10 @@ def remesh(arguments):
         seed=arguments.seed,
         threads=arguments.threads,
     ).validate()
+
+
+def remesh(arguments):
+    settings = _settings(arguments)
     outputs = input_files.Outputs(exports=arguments.export, repaired=arguments.export_repaired, blend=arguments.blend)
     if not bpy_available():
         for path in arguments.inputs:
