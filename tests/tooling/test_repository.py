@@ -161,6 +161,20 @@ def test_only_compat_asks_for_the_version():
     assert [str(path) for path in addon if "bpy.app.version" in text_of(path)] == []
 
 
+# Longer than a reader holds in mind. These are to be split as well: the list only ever becomes shorter.
+MOST_LINES = 500
+LONGER = {
+    "native/hierarchy/hybrid_mesh.cpp", "native/layout/drawn/drawn_layout.cpp", "native/layout/search/layout_search.cpp",
+    "native/parameterization/global_map.cpp", "native/remesh/plan.cpp", "native/remesh/remesh.cpp", "tests/blender/test_layouts.py",
+}  # fmt: skip
+
+
+def test_no_source_file_is_too_long():
+    longer = {str(path) for path in files() if path.suffix in {".h", ".cpp", ".py"} and text_of(path).count("\n") > MOST_LINES}
+    assert longer - LONGER == set(), "split them"
+    assert LONGER - longer == set(), "they are short enough now, and are to be taken off the list"
+
+
 def test_every_source_file_names_the_licence():
     sources = [path for path in files() if path.suffix in SOURCE or path.parts[0] == "scripts" or path.name == "CMakeLists.txt"]
     missing = [str(path) for path in sources if text_of(path).strip() and "SPDX-License-Identifier: GPL-3.0-or-later" not in text_of(path)[:300]]
