@@ -56,7 +56,7 @@ TEST(DrawnLayout, TheEdgesOfACubeDrawnRoughlyAreSixQuads) {
 }
 
 TEST(DrawnLayout, TheSameOnScans) {
-  if (real_models().empty()) GTEST_SKIP() << "no models";
+  if (real_models().empty()) GTEST_SKIP() << no_models();
   for (const auto& path : real_models()) {
     const TriangleSurface surface = unit(repaired(read_polygon_soup(path.string())));
     Vec3 centre = Vec3::Zero();
