@@ -2,10 +2,11 @@
 """Long work in native threads: one base operator, and the places where no thread may outlive Blender's data."""
 
 import atexit
+import traceback
 
 import bpy
 
-from .core.native import NativeMissing, explain, native
+from .core.native import NativeMissing, expected, explain, native
 from .core.tasks import TaskRun
 
 POLL_SECONDS = 0.1
@@ -24,7 +25,6 @@ class NativeJobOperator(bpy.types.Operator):
     where a task failed, beside the line that is reported. In a window it is modal and Esc ends it; from scripts and in the background it
     returns when the work is done.
     """
-
 
     _run = None
     _timer = None
@@ -92,26 +92,34 @@ class NativeJobOperator(bpy.types.Operator):
         try:
             native()
             return TaskRun(self.prepare(context))
-        except (ValueError, NativeMissing) as error:
-            self.report({"ERROR"}, str(error))
-        except native().Error as error:
-            self.report({"ERROR"}, explain(error))
+        except Exception as error:
+            self.report({"ERROR"}, _line_of(error))
         return None
 
     def _conclude(self, context, run):
         made = False
         errors = [f"{task.name}: {cause}" for task, cause in run.errors]
         for task, error in run.failures:
-            self.failed(context, task, error)
+            self._attempt(errors, self.failed, context, task, error)
         if run.results:
-            try:
-                self.finish(context, run.results)
-                made = True
-            except ValueError as error:
-                errors.append(str(error))
+            made = self._attempt(errors, self.finish, context, run.results)
+        if not made and not errors:
+            errors.append("There was nothing to do")
         if errors:
             self.report({"ERROR"}, "\n".join(errors))
         return {"FINISHED"} if made else {"CANCELLED"}
+
+    def _attempt(self, errors, function, *arguments):
+        """Whether a function did all that it is to do; if not, what went wrong is added to the errors."""
+        try:
+            function(*arguments)
+            return True
+        except Exception as error:
+            errors.append(_line_of(error))
+            if not expected(error):
+                # It may have left off anywhere, and an operator that is cancelled makes no undo step: what is there can be undone all the same.
+                bpy.ops.ed.undo_push(message=f"{self.bl_label} (Incomplete)")
+            return False
 
     def _show(self, context):
         text = f"{self._run.status}   {self._run.progress:.0%}   (Esc cancels)"
@@ -126,6 +134,13 @@ class NativeJobOperator(bpy.types.Operator):
             self._timer = None
             if context.workspace:
                 context.workspace.status_text_set(None)
+
+
+def _line_of(error):
+    """One line for people; the console gets the rest of what was not foreseen."""
+    if not expected(error):
+        traceback.print_exception(error)
+    return explain(error)
 
 
 _runs = set()

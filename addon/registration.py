@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is registered in Blender, in order. A class that cannot be registered stops everything, loudly."""
+"""What is registered in Blender, in order. What cannot be registered stops everything, loudly, and nothing is left registered."""
+
+import contextlib
 
 import bpy
 
@@ -7,6 +9,7 @@ from . import compat, jobs
 from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
 from .features.layouts import properties as layout_properties
+from .features.layouts import region_operator
 from .features.levels import operators as level_operators
 from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
@@ -29,35 +32,35 @@ CLASSES = (
     layout_operators.HYBRID_MESH_OT_show_problem,
     layout_operators.HYBRID_MESH_OT_remesh_layout,
     layout_operators.HYBRID_MESH_OT_remesh_boundary,
-    layout_operators.HYBRID_MESH_OT_repatch_region,
+    region_operator.HYBRID_MESH_OT_repatch_region,
     layout_panel.HYBRID_MESH_UL_problems,
     remesh_panel.HYBRID_MESH_PT_remesh,
     remesh_panel.HYBRID_MESH_PT_advanced,
     level_panel.HYBRID_MESH_PT_levels,
     layout_panel.HYBRID_MESH_PT_layout,
 )
-PROPERTY_MODULES = (level_properties, layout_properties, remesh_properties)
+# Whose property groups what of Blender's has: type, attribute, group.
+PROPERTIES = (*level_properties.PROPERTIES, *layout_properties.PROPERTIES, *remesh_properties.PROPERTIES)
 
-_command_line = []
+_registered = contextlib.ExitStack()  # how to undo it all, the last first
 
 
 def register():
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
-    for module in PROPERTY_MODULES:
-        module.register()
-    jobs.register()
-    _command_line.append(compat.register_command_line("hybrid_mesh", _run_command_line))
+    with contextlib.ExitStack() as undo:
+        for cls in CLASSES:
+            bpy.utils.register_class(cls)
+            undo.callback(bpy.utils.unregister_class, cls)
+        for owner, name, group in PROPERTIES:
+            setattr(owner, name, bpy.props.PointerProperty(type=group))
+            undo.callback(delattr, owner, name)
+        jobs.register()
+        undo.callback(jobs.unregister)
+        undo.callback(compat.unregister_command_line, compat.register_command_line("hybrid_mesh", _run_command_line))
+        _registered.enter_context(undo.pop_all())
 
 
 def unregister():
-    while _command_line:
-        compat.unregister_command_line(_command_line.pop())
-    jobs.unregister()
-    for module in reversed(PROPERTY_MODULES):
-        module.unregister()
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+    _registered.close()
 
 
 def _run_command_line(arguments):

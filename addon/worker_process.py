@@ -16,6 +16,18 @@ def load_package():
     return package
 
 
+def extract(job):
+    from hybrid_mesh import blend_jobs
+
+    return blend_jobs.extract(job)
+
+
+def write_blend(job):
+    from hybrid_mesh import blend_jobs
+
+    return blend_jobs.write_blend(job)
+
+
 if __name__ == "__main__":
     # Python puts the script's own folder first; its modules are the package's, not top-level ones.
     if sys.path and os.path.abspath(sys.path[0]) == os.path.dirname(os.path.abspath(__file__)):
@@ -23,4 +35,5 @@ if __name__ == "__main__":
     load_package()
     from hybrid_mesh.core import worker
 
-    sys.exit(worker.main())
+    # Blender is loaded for the jobs that need it only: most children are plain Python.
+    sys.exit(worker.main({**worker.JOBS, "extract": extract, "write_blend": write_blend}))

@@ -6,7 +6,6 @@ import os
 import bpy
 import numpy
 
-from .. import registration
 from ..core.native import explain, native
 from . import levels, meshes
 from .arrays import MatrixError
@@ -41,17 +40,21 @@ def extract(path, folder):
     return found
 
 
-def write(hmesh, name, report, target):
-    """A .blend that holds the levels of a .hmesh and nothing else."""
+def new():
+    """Starts an empty file in a Blender that knows of no add-on."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    registration.register()
+
+
+def build(hmesh, name):
+    """Puts the levels of a .hmesh into the scene; returns levels.Built."""
     hierarchy = native().load_hierarchy(hmesh)
     parts = [(level, hierarchy.level(level)) for level in hierarchy.level_names]
     built = levels.build(name, parts, numpy.eye(4), bpy.context.scene)
     levels.show_preview_only(built)
-    from ..features.levels import properties
+    return built
 
-    properties.describe(built, None, report)
+
+def save(target):
     bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(target), compress=True, copy=True)
     if not os.path.isfile(target):
         raise OSError("the .blend could not be written")

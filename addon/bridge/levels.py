@@ -22,6 +22,7 @@ class Built:
     level_names: list
     levels: list
     preview: bpy.types.Object
+    blocks: list  # all data-blocks that were made, in order
 
 
 def build(name, levels, matrix, scene, place=None, source=None, carry=None):
@@ -56,10 +57,14 @@ def build(name, levels, matrix, scene, place=None, source=None, carry=None):
             objects.append(obj)
         preview = _preview(name, objects, collection, place, made)
     except BaseException:
-        for block in reversed(made):
-            _collection_of(block).remove(block)
+        _remove(made)
         raise
-    return Built(collection, [level_name for level_name, _ in levels], objects, preview)
+    return Built(collection, [level_name for level_name, _ in levels], objects, preview, made)
+
+
+def remove(built):
+    """Takes back what build() has made."""
+    _remove(built.blocks)
 
 
 def add_figures(mesh, arrays):
@@ -175,6 +180,11 @@ def _new_object(name, data, collection, place):
     if place is not None:
         place(obj)
     return obj
+
+
+def _remove(blocks):
+    for block in reversed(blocks):
+        _collection_of(block).remove(block)
 
 
 def _collection_of(block):

@@ -10,7 +10,7 @@ import sys
 from . import inputs as input_files
 from . import plans
 from .batch import Batch, BatchOptions, OutputError
-from .native import explain
+from .native import NativeMissing, explain
 from .process import Processes, WorkerFailed, bpy_available
 from .settings import FACES, RemeshSettings, SettingsError
 from .version import VERSION
@@ -46,6 +46,9 @@ def run(argv):
     except (WrongArguments, SettingsError, input_files.InputsError) as error:
         _fail(str(error))
         return WRONG_ARGUMENTS
+    except NativeMissing as error:
+        _fail(str(error))
+        return FAILED
     except KeyboardInterrupt:
         _fail("interrupted")
         return INTERRUPTED
@@ -66,8 +69,13 @@ class _Parser(argparse.ArgumentParser):
         raise WrongArguments(f"{message} ({self.prog} --help says more)")
 
 
-def remesh(arguments):
-    settings = RemeshSettings(
+def remesh_settings(options):
+    """The RemeshSettings that options of the command `remesh` stand for; raises WrongArguments or SettingsError."""
+    return _settings(_parser().parse_args(["remesh", "none", "--output", "none", *options]))
+
+
+def _settings(arguments):
+    return RemeshSettings(
         vertices=arguments.vertices or 0,
         error=arguments.error or 0.0,
         levels=-1 if arguments.levels is None else arguments.levels,
@@ -82,6 +90,10 @@ def remesh(arguments):
         seed=arguments.seed,
         threads=arguments.threads,
     ).validate()
+
+
+def remesh(arguments):
+    settings = _settings(arguments)
     outputs = input_files.Outputs(exports=arguments.export, repaired=arguments.export_repaired, blend=arguments.blend)
     if not bpy_available():
         for path in arguments.inputs:

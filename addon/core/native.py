@@ -29,7 +29,7 @@ def explain(error, path=None):
         text = "not enough memory"
     elif kind == "InternalError":
         text = f"internal error: {text}"
-    elif not _expected(error):
+    elif not expected(error):
         text = f"internal error: {kind}: {text}"
     if path is not None:
         for name in (os.fspath(path), os.path.basename(path)):
@@ -37,7 +37,8 @@ def explain(error, path=None):
     return text or kind
 
 
-def _expected(error):
+def expected(error):
+    """Whether an error was foreseen: its words are then meant for people."""
     if isinstance(error, (NativeMissing, ValueError)):
         return True
     return any(base.__name__ == "Error" for base in type(error).__mro__)

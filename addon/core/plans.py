@@ -4,11 +4,11 @@
 import json
 import math
 
+from .limits import limits
+
 FORMAT = "hybrid-mesh plan"
 VERSION = 1
 FITS = ("tight", "drawn")
-MAXIMUM_BUFFER_RINGS = 8
-MAXIMUM_CUBES = 1000
 
 
 class PlanError(ValueError):
@@ -69,13 +69,13 @@ def quad_addresses(level, roots, paths, level_of_root):
 def repatch_operation(level, addresses, layout, buffer_rings):
     """The operation that lays out the quads at `addresses` anew.
 
-    layout: of drawn_layout(), automatic_layout(), cubes_layout() or template_layout(); buffer_rings: 0..8.
+    layout: of drawn_layout(), automatic_layout(), cubes_layout() or template_layout(); buffer_rings: how many rings of quads around them are smoothed.
     """
     quads = [str(one) for one in addresses]
     if not quads:
         raise PlanError("no quads are given")
-    _whole("level", level, 0, None)
-    _whole("buffer rings", buffer_rings, 0, MAXIMUM_BUFFER_RINGS)
+    _whole("level", level, 1, limits().most_levels)
+    _whole("buffer rings", buffer_rings, 0, limits().most_buffer_rings)
     return {"level": level, "quads": quads, **layout, "buffer_rings": buffer_rings}
 
 
@@ -98,7 +98,7 @@ def automatic_layout():
 
 def cubes_layout(height=0):
     """A tower of so many cubes on the region; 0: as many as make its sides square."""
-    _whole("height", height, 0, MAXIMUM_CUBES)
+    _whole("height", height, 0, limits().most_cubes)
     return {"layout": "cubes", "height": height}
 
 
@@ -119,7 +119,7 @@ def boundary_plan(nodes=None, cubes=0):
 
     nodes: four points in world space, in any order; None: they are found. cubes: 0 for as many as make their sides square.
     """
-    _whole("cubes", cubes, 0, MAXIMUM_CUBES)
+    _whole("cubes", cubes, 0, limits().most_cubes)
     points = "automatic" if nodes is None else _points(nodes, "the boundary has nodes")
     if nodes is not None and len(points) != 4:
         raise PlanError(f"a base on a boundary has four nodes there, not {len(points)}")
@@ -161,9 +161,8 @@ def _refuse_constant(word):
 
 
 def _whole(name, value, least, most):
-    if isinstance(value, bool) or not isinstance(value, int) or value < least or (most is not None and value > most):
-        bounds = f"of at least {least}" if most is None else f"from {least} to {most}"
-        raise PlanError(f"the {name} must be a whole number {bounds}, not {value!r}")
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise PlanError(f"the {name} must be a whole number from {least} to {most}, not {value!r}")
 
 
 def _points(points, whose):

@@ -5,15 +5,11 @@ import hashlib
 import math
 from dataclasses import asdict, dataclass, fields, replace
 
+from .limits import limits
+
 REFINEMENTS = ("uniform", "adaptive")
 FACES = ("quads", "transition", "triangles")
 BASES = ("auto", "min")
-
-MAXIMUM_VERTICES = 2**31 - 1
-MAXIMUM_LEVELS = 12
-MAXIMUM_BASE_QUADS = 10_000_000
-MAXIMUM_SEED = 2**64 - 1
-MAXIMUM_THREADS = 1024
 
 # How an option is called where the user typed it; the command line's name is the one people look up.
 OPTION_NAMES = {
@@ -55,22 +51,24 @@ class RemeshSettings:
 
     def validate(self):
         """Returns self; raises SettingsError naming the first option that is out of bounds."""
-        _whole("vertices", self.vertices, 0, MAXIMUM_VERTICES, "0 for no bound, or")
-        _number("error", self.error, 0, 1, "at least 0 and below 1 (a fraction of the bounding-box diagonal)", open_end=True)
-        _whole("levels", self.levels, -1, MAXIMUM_LEVELS, "-1 for as many as are needed, or")
+        bounds = limits()
+        _whole("vertices", self.vertices, 0, bounds.most_vertices, "0 for no bound, or")
+        _fraction("error", self.error, bounds.end_of_error, "the bounding-box diagonal")
+        _whole("levels", self.levels, -1, bounds.most_levels, "-1 for as many as are needed, or")
         _choice("refinement", self.refinement, REFINEMENTS)
         _choice("faces", self.faces, FACES)
         if isinstance(self.base, str):
             if self.base not in BASES:
-                raise SettingsError(f"--base-quads must be auto, min or a whole number from 1 to {MAXIMUM_BASE_QUADS}, not {self.base!r}")
+                raise SettingsError(f"--base-quads must be auto, min or a whole number from 1 to {bounds.most_base_quads}, not {self.base!r}")
         else:
-            _whole("base", self.base, 1, MAXIMUM_BASE_QUADS, "auto, min or")
-        _number("stretch_threshold", self.stretch_threshold, 1, 1e6, "from 1 to 1000000")
-        _number("drop_components", self.drop_components, 0, 1, "at least 0 and below 1 (a fraction of the whole area)", open_end=True)
+            _whole("base", self.base, 1, bounds.most_base_quads, "auto, min or")
+        least, most = bounds.least_stretch_threshold, bounds.most_stretch_threshold
+        _number("stretch_threshold", self.stretch_threshold, lambda value: least <= value <= most, f"from {least:.7g} to {most:.7g}")
+        _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")
         if not isinstance(self.plan, str):
             raise SettingsError("--plan must be a plan's text")
-        _whole("seed", self.seed, 0, MAXIMUM_SEED)
-        _whole("threads", self.threads, 0, MAXIMUM_THREADS, "0 for all cores, or")
+        _whole("seed", self.seed, 0, bounds.most_seed)
+        _whole("threads", self.threads, 0, bounds.most_threads, "0 for all cores, or")
         return self
 
     def native(self):
@@ -118,9 +116,12 @@ def _whole(name, value, least, most, prefix=""):
         raise SettingsError(f"{OPTION_NAMES[name]} must be {bounds}, not {value!r}")
 
 
-def _number(name, value, least, most, bounds, open_end=False):
-    inside = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value) and least <= value <= most
-    if not inside or (open_end and value == most):
+def _fraction(name, value, end, whole):
+    _number(name, value, lambda number: 0 <= number < end, f"at least 0 and below {end:.7g} (a fraction of {whole})")
+
+
+def _number(name, value, fits, bounds):
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not fits(value):
         raise SettingsError(f"{OPTION_NAMES[name]} must be {bounds}, not {value!r}")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a child process does: one job, one answer. Jobs are dictionaries with a `kind`."""
+"""What a child process does: one job, one answer. A job is a dictionary with a `kind`, the name of the function that does it."""
 
 import json
 import os
@@ -14,15 +14,18 @@ from .process import RESULT_MARK
 from .version import VERSION
 
 
-def main():
-    """Reads a job from stdin, does it, writes the answer; returns the exit code."""
+def main(jobs):
+    """Reads a job from stdin, does it, writes the answer; returns the exit code.
+
+    jobs: {kind: function that takes a job and returns its answer}, JOBS and perhaps others.
+    """
     job = json.loads(_first_line())
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
-        answer = JOBS[job["kind"]](job)
+        answer = jobs[job["kind"]](job)
     except Exception as error:  # Everything becomes one line: the parent has nothing else to show.
         cause = explain(error, job.get("path"))
-        # The folder that outputs wait in is nobody's business.
+        # Nobody knows the folder that outputs wait in until they are complete.
         answer = {"error": cause.replace(job["folder"] + os.sep, "") if "folder" in job else cause}
     sys.stdout.flush()
     # Straight to the descriptor: where Python's stdout is block-buffered or replaced the answer must not be lost.
@@ -37,7 +40,7 @@ def remesh(job):
     if job.get("arrays"):
         mesh = _load_arrays(job["arrays"])
     else:
-        _refuse_unreadable(job["path"])
+        refuse_unreadable(job["path"])
         mesh = module.read_mesh(job["path"])
     read = time.monotonic()
     settings = settings_module.from_mapping(job["settings"])
@@ -86,7 +89,7 @@ def compare(job):
     for path in job["paths"]:
         job["path"] = path
         try:
-            _refuse_unreadable(path)
+            refuse_unreadable(path)
             meshes.append(module.read_mesh(path))
         except Exception as error:
             return {"error": f"{path}: {explain(error, path)}"}
@@ -95,7 +98,7 @@ def compare(job):
 
 def info(job):
     module = native()
-    _refuse_unreadable(job["path"])
+    refuse_unreadable(job["path"])
     hierarchy = module.load_hierarchy(job["path"])
     answer = {"info": json.loads(hierarchy.info())}
     if job["check"]:
@@ -103,34 +106,16 @@ def info(job):
     return answer
 
 
-def extract(job):
-    """Every mesh object of a .blend as arrays in a folder. Needs bpy."""
-    from ..bridge import blend_files
-
-    _refuse_unreadable(job["path"])
-    return {"objects": blend_files.extract(job["path"], job["folder"])}
-
-
-def write_blend(job):
-    """A .blend with the levels of a hierarchy. Needs bpy."""
-    from ..bridge import blend_files
-
-    with open(job["report"], encoding="utf-8", errors="surrogateescape") as file:
-        report = json.load(file)
-    blend_files.write(job["hmesh"], job["name"], report, job["target"])
-    return {}
-
-
 def write_text(path, text):
     with open(path, "w", encoding="utf-8", errors="surrogateescape", newline="\n") as file:
         file.write(text)
 
 
-JOBS = {"remesh": remesh, "compare": compare, "info": info, "extract": extract, "write_blend": write_blend}
+JOBS = {"remesh": remesh, "compare": compare, "info": info}
 
 
-def _refuse_unreadable(path):
-    # The operating system's own words, before a reader finds some of its own.
+def refuse_unreadable(path):
+    """Raises the operating system's own words, before a reader finds some of its own."""
     with open(path, "rb") as file:
         if not file.read(1):
             raise ValueError("the file is empty")

@@ -8,6 +8,7 @@ namespace hybrid_mesh {
 
 // What each file of this folder adds to the module.
 void bind_errors(pybind11::module_& module);
+void bind_limits(pybind11::module_& module);
 void bind_mesh_io(pybind11::module_& module);
 void bind_hierarchy(pybind11::module_& module);
 void bind_subdivision(pybind11::module_& module);    // a method of bind_hierarchy's class

@@ -5,6 +5,7 @@ PYBIND11_MODULE(_native, module) {
   module.doc() = "The native library of Hybrid Mesh. A mesh is points (n, 3), face_offsets (m + 1,) and face_indices (k,).";
   module.attr("__version__") = HYBRID_MESH_VERSION;
   hybrid_mesh::bind_errors(module);
+  hybrid_mesh::bind_limits(module);
   hybrid_mesh::bind_mesh_io(module);
   hybrid_mesh::bind_hierarchy(module);
   hybrid_mesh::bind_subdivision(module);

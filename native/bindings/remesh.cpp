@@ -2,11 +2,11 @@
 #include "bindings/remesh.h"
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "base/limits.h"
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
 #include "bindings/job.h"
@@ -30,10 +30,7 @@ class Setting {
     if (!index) throw py::error_already_set();
     int overflow = 0;
     const long long number = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
-    if (overflow != 0 || number < least || number > most) {
-      refuse(most == std::numeric_limits<std::int64_t>::max() ? "at least " + std::to_string(least)
-                                                              : "from " + std::to_string(least) + " to " + std::to_string(most));
-    }
+    if (overflow != 0 || number < least || number > most) refuse("from " + std::to_string(least) + " to " + std::to_string(most));
     return number;
   }
 
@@ -43,6 +40,19 @@ class Setting {
     if (PyErr_Occurred()) throw py::error_already_set();
     if (!std::isfinite(number)) refuse("a finite number");
     return number;
+  }
+
+  double number(double least, double most) const {
+    const double value = number();
+    if (value < least || value > most) refuse("from " + text_of(least) + " to " + text_of(most));
+    return value;
+  }
+
+  // At least 0.
+  double number_below(double end) const {
+    const double value = number();
+    if (value < 0 || value >= end) refuse("at least 0 and below " + text_of(end));
+    return value;
   }
 
   bool flag() const {
@@ -62,20 +72,19 @@ class Setting {
   }
 
  private:
+  static std::string text_of(double value) { return py::str(py::float_(value)).cast<std::string>(); }
+
   std::string key_;
   py::handle value_;
 };
 
-constexpr std::int64_t kUnbounded = std::numeric_limits<std::int64_t>::max();
-
 void apply(RemeshOptions& options, const std::string& key, const Setting& setting) {
   if (key == "vertices") {
-    options.vertices = setting.whole_number(0, kUnbounded);
+    options.vertices = setting.whole_number(0, limits::most_vertices);
   } else if (key == "error") {
-    options.error = setting.number();
-    if (options.error < 0) setting.refuse("at least 0");
+    options.error = setting.number_below(limits::end_of_error);
   } else if (key == "levels") {
-    options.levels = static_cast<int>(setting.whole_number(-1, 20));
+    options.levels = static_cast<int>(setting.whole_number(-1, limits::most_levels));
   } else if (key == "refinement") {
     if (setting.is("uniform"))
       options.refinement = Refinement::Uniform;
@@ -99,24 +108,22 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
       options.base = BaseSize::Minimal;
     } else {
       options.base = BaseSize::Given;
-      options.base_quads = static_cast<int>(setting.whole_number(1, std::numeric_limits<int>::max()));
+      options.base_quads = static_cast<int>(setting.whole_number(1, limits::most_base_quads));
     }
   } else if (key == "stretch_threshold") {
-    options.stretch_threshold = setting.number();
-    if (options.stretch_threshold <= 0) setting.refuse("greater than 0");
+    options.stretch_threshold = setting.number(limits::least_stretch_threshold, limits::most_stretch_threshold);
   } else if (key == "semi_regular") {
     options.semi_regular = setting.flag();
   } else if (key == "drop_components") {
-    options.drop_components = setting.number();
-    if (!(options.drop_components >= 0 && options.drop_components < 1)) setting.refuse("at least 0 and less than 1");
+    options.drop_components = setting.number_below(limits::end_of_drop_components);
   } else if (key == "plan") {
     options.plan = setting.text();
   } else if (key == "strict") {
     options.strict = setting.flag();
   } else if (key == "seed") {
-    options.seed = static_cast<std::uint64_t>(setting.whole_number(0, kUnbounded));
+    options.seed = static_cast<std::uint64_t>(setting.whole_number(0, limits::most_seed));
   } else if (key == "threads") {
-    options.threads = static_cast<int>(setting.whole_number(0, 1024));
+    options.threads = static_cast<int>(setting.whole_number(0, limits::most_threads));
   } else {
     throw Error(ErrorCode::InvalidInput, "there is no setting " + key);
   }

@@ -4,15 +4,16 @@
 #include <cstdint>
 
 #include "base/context.h"
+#include "base/limits.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "surface/distance.h"
 
 namespace hybrid_mesh {
 
 struct AdaptiveOptions {
-  std::int64_t vertices = 0;  // hard upper bound on the mesh's vertices; 0 = as many as the error takes, up to four million
-  double error = 0;           // stop at this l2 (relative to the bounding-box diagonal); 0 = none
-  int deepest = 12;           // finest level of a leaf
+  std::int64_t vertices = 0;          // hard upper bound on the mesh's vertices; 0 = as many as the error takes, up to four million
+  double error = 0;                   // stop at this l2 (relative to the bounding-box diagonal); 0 = none
+  int deepest = limits::most_levels;  // finest level of a leaf
 };
 
 // Refines a hierarchy of base quads, each with its map, where that brings the mesh of its leaves closest to the surface, and returns that mesh:

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/limits.h"
+
 namespace hybrid_mesh {
 namespace {
 
-constexpr int kMostLevels = 12;
 constexpr int kMostPlannedLevels = 6;  // above a base whose size is free: more would leave it a few quads
 
 }  // namespace
@@ -46,7 +47,7 @@ Budget with_levels(Budget b, int levels, const RemeshOptions& options, const Sou
 
 int levels_within(std::int64_t vertices, int level, std::int64_t quads, std::int64_t euler, std::int64_t boundary_sides) {
   int levels = level;
-  while (levels < kMostLevels && uniform_vertices(quads, euler, boundary_sides, levels + 1 - level) <= vertices) ++levels;
+  while (levels < limits::most_levels && uniform_vertices(quads, euler, boundary_sides, levels + 1 - level) <= vertices) ++levels;
   return levels;
 }
 

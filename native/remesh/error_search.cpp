@@ -6,14 +6,14 @@
 #include <optional>
 #include <utility>
 
+#include "base/limits.h"
 #include "remesh/level_fits.h"
 #include "remesh/report.h"
 
 namespace hybrid_mesh {
 namespace {
 
-constexpr int kMostSteps = 4;  // to bases of other sizes
-constexpr int kMostLevels = 12;
+constexpr int kMostSteps = 4;                    // to bases of other sizes
 constexpr std::int64_t kMostVertices = 1000000;  // unless a number is given, or the surface has more
 
 struct Attempt {
@@ -78,7 +78,7 @@ class ErrorSearch {
   // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.
   Attempt climb() {
     const bool one_level = options().levels >= 0;
-    const int last = options().vertices > 0 || one_level ? best_.levels : kMostLevels;
+    const int last = options().vertices > 0 || one_level ? best_.levels : limits::most_levels;
     for (int level = one_level ? last : 0;; ++level) {
       fit_uniform(task_, best_, level);
       const Attempt made = measured(best_);

@@ -21,8 +21,6 @@ namespace plan_format {
 using Json = nlohmann::ordered_json;
 inline constexpr const char* kFormat = "hybrid-mesh plan";
 inline constexpr int kVersion = 1;
-inline constexpr int kMostLevels = 12;
-inline constexpr int kMostCubes = 1000;  // of a tower
 inline constexpr const char* kAutomatic = "automatic";
 // Words for the ways in which a region is laid out without curves.
 inline constexpr std::array<std::pair<RegionPattern::Kind, const char*>, 3> kRegionLayouts{

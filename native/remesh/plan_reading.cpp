@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/limits.h"
 #include "construction/addressed_graph.h"
 #include "layout/regions/region_pattern.h"
 #include "remesh/plan.h"
@@ -32,7 +33,7 @@ BoundaryTower tower_from_json(const PlanEntry& entry) {
   const PlanEntry nodes = entry.at("boundary_nodes");
   if (!nodes.is(kAutomatic))
     for (const PlanEntry& p : nodes.list(4)) tower.nodes.push_back(p.point());
-  if (entry.has("cubes")) tower.cubes = static_cast<int>(entry.at("cubes").integer(0, kMostCubes));
+  if (entry.has("cubes")) tower.cubes = static_cast<int>(entry.at("cubes").integer(0, limits::most_cubes));
   return tower;
 }
 
@@ -96,7 +97,7 @@ LayoutEdit layout_edit_from_json(const PlanEntry& entry, const AddressedGraph& l
   const std::optional<PatchRegion> region = make_region(layout.graph(), patches, start);
   if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
   const std::string kind = entry.at("kind").text();
-  if (kind == "add_cubes") return tower_edit(layout.graph(), *region, static_cast<int>(entry.at("height").integer(1, kMostCubes)));
+  if (kind == "add_cubes") return tower_edit(layout.graph(), *region, static_cast<int>(entry.at("height").integer(1, limits::most_cubes)));
   if (kind != "repatch") entry.at("kind").refuse("must be \"repatch\" or \"add_cubes\"");
   LayoutEdit edit;
   edit.patches = region->patches;
@@ -199,7 +200,7 @@ std::vector<LayoutScript::Level> levels_from_json(const PlanEntry& entry, const 
   std::vector<LayoutScript::Level> levels;
   for (const PlanEntry& e : entry.list()) {
     e.only({"level", "vertices", "vertices_a_quad", "operations"});
-    const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, kMostLevels));
+    const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, limits::most_levels));
     while (levels.size() < level) {
       if (4 * static_cast<std::int64_t>(layout.graph().patch_count()) > kMostPlanQuads)
         e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
@@ -267,18 +268,18 @@ Plan::Region region_from_json(const PlanEntry& entry) {
     keys.insert("curves");
   }
   entry.only(keys);
-  r.level = static_cast<int>(entry.at("level").integer(1, kMostLevels));
+  r.level = static_cast<int>(entry.at("level").integer(1, limits::most_levels));
   for (const PlanEntry& q : entry.at("quads").list()) r.quads.push_back(q.text());
   if (r.quads.empty()) entry.refuse("has no quads");
   if (entry.has("curves")) r.pattern.strokes = strokes_from_json(entry.at("curves"));
-  if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, kMostCubes));
+  if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, limits::most_cubes));
   if (r.pattern.kind == RegionPattern::Kind::Template) {
     const std::vector<PlanEntry> start = entry.at("start").list(2), quads = entry.at("new_quads").list();
     r.start_quad = start[0].text();
     r.start_side = start[1].index(4);
     for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
   }
-  if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, 100));
+  if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, limits::most_buffer_rings));
   return r;
 }
 

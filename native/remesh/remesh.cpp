@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/limits.h"
 #include "remesh/candidate.h"
 #include "remesh/error_search.h"
 #include "remesh/level_fits.h"
@@ -21,7 +22,7 @@ void check_options(const RemeshOptions& options) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorCode::InvalidInput, what); };
   if (options.vertices < 0) refuse("vertices must not be negative");
   if (!(options.error >= 0)) refuse("error must not be negative");
-  if (options.levels > 12) refuse("levels must be at most 12");
+  if (options.levels > limits::most_levels) refuse("levels must be at most " + std::to_string(limits::most_levels));
   if (!(options.drop_components >= 0 && options.drop_components < 1)) refuse("drop_components must be in [0, 1)");
   if (options.base == BaseSize::Given && options.base_quads < 1) refuse("base_quads must be positive");
 }

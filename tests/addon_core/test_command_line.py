@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import pathlib
 import resource
 import shutil
 import signal
@@ -122,6 +123,15 @@ def test_help_and_version(command_line):
     assert "remesh" in command_line.run("--help").out
     assert "--base-quads" in command_line.run("remesh", "--help").out
     assert command_line.run("--version").returncode == 0
+
+
+def test_without_the_compiled_module_it_says_so(command_line, tmp_path):
+    staged = pathlib.Path(command_line.environment["PYTHONPATH"]) / "hybrid_mesh"
+    shutil.copytree(staged, tmp_path / "bare" / "hybrid_mesh", ignore=shutil.ignore_patterns("_native.py"))
+    command_line.environment["PYTHONPATH"] = str(tmp_path / "bare")
+    run = command_line.run("remesh", command_line.box("box.obj"), "--output", "out")
+    assert (run.returncode, run.out, run.err.count("\n")) == (1, "", 1) and "_native cannot be loaded" in run.err
+    assert command_line.outputs() is None
 
 
 def test_resume_does_only_what_is_not_done(command_line):

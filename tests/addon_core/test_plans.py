@@ -4,6 +4,7 @@ import json
 import numpy
 import pytest
 from hybrid_mesh.core import plans
+from hybrid_mesh.core.limits import limits
 
 PLAN = json.dumps({"format": "hybrid-mesh plan", "version": 1, "base": {"quads": [[0, 1, 2, 3]]}, "operations": [], "later": "kept"})
 LINE = numpy.array([[0, 0, 0.1], [1, 2, 1 / 3]])
@@ -71,7 +72,9 @@ def test_an_operation_is_plain_json_with_exact_points():
         ({"level": 1.5}, "level"),
         ({"addresses": []}, "no quads"),
         ({"strokes": []}, "no curves"),
-        ({"buffer_rings": 9}, "buffer rings"),
+        ({"buffer_rings": limits().most_buffer_rings + 1}, "buffer rings"),
+        ({"level": 0}, "level"),
+        ({"level": limits().most_levels + 1}, "level"),
         ({"buffer_rings": -1}, "buffer rings"),
         ({"buffer_rings": True}, "buffer rings"),
         ({"strokes": [(LINE, "loose")]}, "loose"),
@@ -94,10 +97,18 @@ def test_layouts_that_are_not_drawn():
     assert json.loads(json.dumps(copied)) == {"level": 3, "quads": ["0.1.2.3"], "layout": "template", "start": ["0.1.2.3", 2], "new_quads": [[0, 1, 2, 3]], "buffer_rings": 0}
 
 
-@pytest.mark.parametrize("height", [-1, 1.0, True, 1001])
+@pytest.mark.parametrize("height", [-1, 1.0, True, limits().most_cubes + 1])
 def test_what_is_no_tower(height):
     with pytest.raises(plans.PlanError, match="height"):
         plans.cubes_layout(height)
+
+
+def test_the_bounds_are_the_native_modules():
+    most = limits()
+    one = operation(level=most.most_levels, buffer_rings=most.most_buffer_rings)
+    assert (one["level"], one["buffer_rings"]) == (most.most_levels, most.most_buffer_rings)
+    assert plans.cubes_layout(most.most_cubes)["height"] == most.most_cubes
+    assert json.loads(plans.boundary_plan(cubes=most.most_cubes))["base"]["cubes"] == most.most_cubes
 
 
 @pytest.mark.parametrize("side, quads", [(4, [[0, 1, 2, 3]]), (-1, [[0, 1, 2, 3]]), (0, []), (0, [[0, 1, 2]]), (0, [[0, 1, 2, -1]])])

@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import dataclasses
+import math
 
 import pytest
 from hybrid_mesh.core import settings
+from hybrid_mesh.core.limits import limits
 from hybrid_mesh.core.settings import RemeshSettings, SettingsError
+
+LARGEST = {
+    "vertices": limits().most_vertices, "levels": limits().most_levels, "base": limits().most_base_quads, "seed": limits().most_seed,
+    "threads": limits().most_threads,
+}  # fmt: skip
 
 
 def test_defaults_and_presets_are_valid():
@@ -15,10 +22,11 @@ def test_defaults_and_presets_are_valid():
 @pytest.mark.parametrize(
     "name, value",
     [
-        ("vertices", -1), ("vertices", 2**31), ("vertices", 1.5), ("vertices", True), ("error", -0.1), ("error", 1), ("error", float("nan")),
-        ("error", float("inf")), ("levels", -2), ("levels", 13), ("refinement", "both"), ("faces", "hexagons"), ("base", "most"), ("base", 0),
-        ("base", 1.5), ("stretch_threshold", 0.5), ("stretch_threshold", float("nan")), ("drop_components", 1), ("drop_components", -0.1),
-        ("seed", -1), ("seed", 2**64), ("threads", -1), ("threads", 5000),
+        ("vertices", -1), ("vertices", 1.5), ("vertices", True), ("error", -0.1), ("error", float("nan")), ("error", float("inf")),
+        ("error", limits().end_of_error), ("levels", -2), ("refinement", "both"), ("faces", "hexagons"), ("base", "most"), ("base", 0),
+        ("base", 1.5), ("stretch_threshold", limits().least_stretch_threshold - 0.25), ("stretch_threshold", 2 * limits().most_stretch_threshold),
+        ("stretch_threshold", float("nan")), ("drop_components", limits().end_of_drop_components), ("drop_components", -0.1), ("seed", -1),
+        ("threads", -1), *((name, most + 1) for name, most in LARGEST.items()),
     ],
 )  # fmt: skip
 def test_what_is_out_of_bounds_is_named(name, value):
@@ -26,6 +34,18 @@ def test_what_is_out_of_bounds_is_named(name, value):
         settings.from_mapping({name: value})
     assert settings.OPTION_NAMES[name] in str(raised.value)
     assert repr(value) in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        *LARGEST.items(), ("stretch_threshold", limits().least_stretch_threshold), ("stretch_threshold", limits().most_stretch_threshold),
+        ("error", math.nextafter(limits().end_of_error, 0)), ("drop_components", math.nextafter(limits().end_of_drop_components, 0)),
+    ],
+)  # fmt: skip
+def test_the_bounds_are_the_native_modules(name, value):
+    """Which here is a stand-in that has others than the library."""
+    assert getattr(settings.from_mapping({name: value}), name) == value
 
 
 def test_every_setting_has_an_option_name():

@@ -110,5 +110,3 @@ def test_exit_codes_from_outside(files):
 
 def test_the_registered_command(files):
     assert module("registration")._run_command_line(["info", str(files / "none.hmesh")]) == 1
-    registered = module("registration")._command_line
-    assert len(registered) == 1 and (registered[0] is not None) == module("compat").HAS_COMMAND_LINE

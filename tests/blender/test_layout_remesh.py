@@ -293,5 +293,5 @@ def test_a_layout_is_copied_to_another_region(world, place):
     made = operations(bpy.context.object)
     assert len(made) == 2 and made[0]["new_quads"] == made[1]["new_quads"] and made[0]["quads"] != made[1]["quads"]
     # The removed quads lie in their layout in the same way.
-    counts = [module("features.layouts.operators")._removed_counts(bpy.context.object.hybrid_mesh.hierarchy, one) for one in made]
+    counts = [module("features.layouts.region_quads").removed_counts(bpy.context.object.hybrid_mesh.hierarchy, one) for one in made]
     assert counts[0] == counts[1] and sorted(counts[0]) == [1, 1, 1, 1, 2, 2]

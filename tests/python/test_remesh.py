@@ -188,6 +188,14 @@ def test_settings_that_cannot_be_used_are_named(name, value):
         _native.start_remesh(*cube(), {name: value})
 
 
+@pytest.mark.parametrize("quads", [40, 100, 300])
+@pytest.mark.parametrize("mesh", [sphere(), torus(), bent_sheet()], ids=["sphere", "torus", "sheet"])
+def test_a_base_of_a_given_size_has_that_size(mesh, quads):
+    result = _native.remesh(*mesh, {"base": quads, "levels": 1})
+    assert json.loads(result.report)["base"]["quads"] == quads
+    assert len(result.hierarchy.level("N0")["offsets"]) - 1 == quads
+
+
 def test_numpy_numbers_are_settings():
     job = _native.start_remesh(*sphere(6), {"vertices": np.int64(500), "error": np.float32(0), "levels": np.int32(1)})
     assert job.wait(60) and len(job.result().final_mesh()["points"]) <= 500

@@ -5,7 +5,7 @@ import bpy
 from bpy.props import CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
 from ...bridge import objects, strokes
-from ...core import plans
+from ...core.limits import limits
 from ..levels.properties import hierarchy_of
 
 KINDS = (
@@ -26,11 +26,14 @@ class RegionProperties:
     """Mix-in for whatever has the settings of a region that is laid out anew as properties."""
 
     layout_kind: EnumProperty(name="Layout", description="Where the region's new quads come from", items=REGION_LAYOUTS, default="DRAWN")
-    height: IntProperty(name="Height", description="Cubes of the tower; 0 for as many as make its sides square", default=0, min=0, max=plans.MAXIMUM_CUBES, soft_max=20)
+    height: IntProperty(
+        name="Height", description="Cubes of the tower; 0 for as many as make its sides square", default=0, min=0, max=limits().most_cubes, soft_max=20
+    )
     turn: IntProperty(name="Turn", description="Turns the copied layout by so many corners of the region's boundary", default=0, min=-100, max=100)
     buffer_rings: IntProperty(
-        name="Buffer Rings", description="Rings of quads around the region that are smoothed with it", default=1, min=0, max=plans.MAXIMUM_BUFFER_RINGS
-    )
+        name="Buffer Rings", description="Rings of quads around the region that are smoothed with it", default=1, min=0,
+        max=limits().most_buffer_rings, soft_max=8,
+    )  # fmt: skip
 
 
 REGION_NAMES = tuple(RegionProperties.__annotations__)
@@ -66,7 +69,7 @@ class HybridMeshLayout(bpy.types.PropertyGroup):
     surface: PointerProperty(name="Surface", type=bpy.types.Object, description="The mesh object that is drawn on")
     snap: FloatProperty(
         name="Snap", description="What ends so near to a node, a curve or the boundary is joined with it; a fraction of the bounding-box diagonal",
-        default=0.02, min=0, max=0.2, precision=3, step=0.1,
+        default=0.02, min=0, max=limits().most_snap, soft_max=0.2, precision=3, step=0.1,
     )  # fmt: skip
     problems: CollectionProperty(type=HybridMeshProblem)
     problem_index: IntProperty(name="Problem", min=0)
@@ -110,11 +113,4 @@ def _kind(obj):
     return obj.hybrid_mesh_layout.kind if obj.is_property_set("hybrid_mesh_layout") else "NONE"
 
 
-def register():
-    bpy.types.Object.hybrid_mesh_layout = PointerProperty(type=HybridMeshLayout)
-    bpy.types.Scene.hybrid_mesh_region = PointerProperty(type=HybridMeshRegion)
-
-
-def unregister():
-    del bpy.types.Scene.hybrid_mesh_region
-    del bpy.types.Object.hybrid_mesh_layout
+PROPERTIES = ((bpy.types.Object, "hybrid_mesh_layout", HybridMeshLayout), (bpy.types.Scene, "hybrid_mesh_region", HybridMeshRegion))

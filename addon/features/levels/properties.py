@@ -94,11 +94,4 @@ def _parsed(text):
         return {}
 
 
-def register():
-    bpy.types.Object.hybrid_mesh = PointerProperty(type=HybridMeshObject)
-    bpy.types.Collection.hybrid_mesh = PointerProperty(type=HybridMeshCollection)
-
-
-def unregister():
-    del bpy.types.Collection.hybrid_mesh
-    del bpy.types.Object.hybrid_mesh
+PROPERTIES = ((bpy.types.Object, "hybrid_mesh", HybridMeshObject), (bpy.types.Collection, "hybrid_mesh", HybridMeshCollection))

@@ -3,6 +3,8 @@
 
 import json
 
+import bpy
+
 from ...bridge import arrays, levels, meshes, objects, placement, transfer
 from ...core.native import native
 from ...core.tasks import Task
@@ -37,7 +39,14 @@ class RemeshJobOperator(NativeJobOperator):
         for obj, (task, _) in zip(sources, results):
             if obj is None:
                 raise ValueError(f"{task.name}: the object is gone from the scene; nothing was made")
-        built = [build_hierarchy(context, obj, result, *task.note) for obj, (task, result) in zip(sources, results, strict=True)]
+        built = []
+        try:
+            for obj, (task, result) in zip(sources, results, strict=True):
+                built.append(build_hierarchy(context, obj, result, *task.note))
+        except BaseException:
+            for one in built:
+                _remove(one)
+            raise
         _select(context, [one.preview for one in built])
         if self.hides_source(context):
             for obj in sources:
@@ -68,12 +77,23 @@ def build_hierarchy(context, obj, result, source, settings):
     parts = [(name, hierarchy.level(name)) for name in hierarchy.level_names]
     carry = transfer.carrier(source, result.repaired())
     built = levels.build(obj.name, parts, source.matrix, context.scene, placement.same_place(obj), obj, carry)
-    report = json.loads(result.report)
-    report["version"] = VERSION
-    report["settings"] = settings.reported()
-    hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
-    levels.show_preview_only(built)
+    try:
+        report = json.loads(result.report)
+        report["version"] = VERSION
+        report["settings"] = settings.reported()
+        hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
+        levels.show_preview_only(built)
+    except BaseException:
+        _remove(built)
+        raise
     return built
+
+
+def _remove(built):
+    plan = built.collection.hybrid_mesh.plan
+    levels.remove(built)
+    if plan is not None:
+        bpy.data.texts.remove(plan)
 
 
 def _select(context, objects):

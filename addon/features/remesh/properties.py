@@ -2,10 +2,11 @@
 """The settings of a remesh as Blender properties, one set for the operator and for the panel."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+import numpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...core import settings as core
-from ...core.plans import MAXIMUM_CUBES
+from ...core.limits import limits
 
 REFINEMENTS = (
     ("UNIFORM", "Uniform", "One quad size everywhere, irregular vertices at the base domain's only"),
@@ -22,41 +23,58 @@ BASES = (
     ("GIVEN", "Given", "A given number of base quads"),
 )
 
+# Blender's whole numbers have 32 bits.
+_LARGEST_WHOLE_NUMBER = 2**31 - 1
+
+
+def _whole(most):
+    """The largest whole number up to `most` that a property can hold."""
+    return min(most, _LARGEST_WHOLE_NUMBER)
+
+
+def _below(end):
+    """The largest number below `end` that a property can hold."""
+    return float(numpy.nextafter(numpy.float32(end), numpy.float32(0)))
+
 
 class RemeshProperties:
     """Mix-in for whatever has the settings of a remesh as properties."""
 
     vertices: IntProperty(
         name="Vertices", description="Hard upper bound on the final mesh's vertices; 0 takes as many as the source has", default=20000, min=0,
-        soft_max=1_000_000,
+        max=_whole(limits().most_vertices), soft_max=1_000_000,
     )  # fmt: skip
     error: FloatProperty(
         name="Error", description="Stop at this L2 distance, as a fraction of the bounding-box diagonal; 0 for no bound", default=0, min=0,
-        max=0.5, precision=6, step=0.001,
+        max=_below(limits().end_of_error), soft_max=0.5, precision=6, step=0.001,
     )  # fmt: skip
     levels: IntProperty(
         name="Levels", description="Regular levels above the base domain: exactly (uniform) or at most (adaptive); -1 for as many as are needed",
-        default=-1, min=-1, max=core.MAXIMUM_LEVELS,
+        default=-1, min=-1, max=limits().most_levels,
     )  # fmt: skip
     refinement: EnumProperty(name="Refinement", description="How quad sizes are chosen", items=REFINEMENTS, default="UNIFORM")
     faces: EnumProperty(name="Faces", description="What is made where quads of two sizes meet", items=FACES, default="QUADS")
     base: EnumProperty(name="Base", description="How many quads the base domain has", items=BASES, default="AUTO")
-    base_quads: IntProperty(name="Base Quads", description="Quads of the base domain", default=300, min=1, max=core.MAXIMUM_BASE_QUADS, soft_max=5000)
-    stretch: FloatProperty(
-        name="Stretch", description="Grow skin where the map is stretched more than this", default=4, min=1, max=1e6, soft_max=20
+    base_quads: IntProperty(
+        name="Base Quads", description="Quads of the base domain", default=300, min=1, max=_whole(limits().most_base_quads), soft_max=5000
     )
+    stretch: FloatProperty(
+        name="Stretch", description="Grow skin where the map is stretched more than this", default=4, min=limits().least_stretch_threshold,
+        max=limits().most_stretch_threshold, soft_max=20,
+    )  # fmt: skip
     semi_regular: BoolProperty(name="Semi-Regular", description="No irregular operations: the topology and layout of the base domain on every level")
     drop_components: FloatProperty(
-        name="Drop Components", description="Remove components with less than this fraction of the whole area", default=0, min=0, max=0.99, precision=4
-    )
+        name="Drop Components", description="Remove components with less than this fraction of the whole area", default=0, min=0,
+        max=_below(limits().end_of_drop_components), soft_max=0.99, precision=4,
+    )  # fmt: skip
     strict: BoolProperty(name="Strict", description="Refuse a surface that needs repair instead of repairing it")
-    seed: IntProperty(name="Seed", description="Of what is arbitrary", default=1, min=0)
-    threads: IntProperty(name="Threads", description="0 for all cores; never changes the result", default=0, min=0, max=core.MAXIMUM_THREADS)
+    seed: IntProperty(name="Seed", description="Of what is arbitrary", default=1, min=0, max=_whole(limits().most_seed))
+    threads: IntProperty(name="Threads", description="0 for all cores; never changes the result", default=0, min=0, max=limits().most_threads)
 
 
 CUBES = IntProperty(
     name="Cubes", description="Cubes of the chain on the boundary that the base domain is; 0 for as many as make their sides square", default=0, min=0,
-    max=MAXIMUM_CUBES, soft_max=20,
+    max=limits().most_cubes, soft_max=20,
 )  # fmt: skip
 SETTING_NAMES = tuple(RemeshProperties.__annotations__)
 
@@ -130,9 +148,4 @@ def draw_advanced(layout, properties):
     column.prop(properties, "threads")
 
 
-def register():
-    bpy.types.Scene.hybrid_mesh = PointerProperty(type=HybridMeshScene)
-
-
-def unregister():
-    del bpy.types.Scene.hybrid_mesh
+PROPERTIES = ((bpy.types.Scene, "hybrid_mesh", HybridMeshScene),)

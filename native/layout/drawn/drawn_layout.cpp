@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/tolerances.h"
 #include "layout/curves/curve_tightening.h"
 #include "layout/curves/surface_paths.h"
@@ -491,7 +492,8 @@ class LayoutMaker {
 
 DrawnLayout make_layout(const TriangleSurface& surface, const std::vector<DrawnStroke>& strokes, const DrawnLayoutOptions& options,
                         const Progress& progress) {
-  if (!(options.snap >= 0 && options.snap <= 0.5)) throw Error(ErrorCode::InvalidInput, "snap must be from 0 to 0.5");
+  if (!(options.snap >= 0 && options.snap <= limits::most_snap))
+    throw Error(ErrorCode::InvalidInput, "snap must be from 0 to " + std::to_string(limits::most_snap));
   if (!(options.reach >= 0 && std::isfinite(options.reach))) throw Error(ErrorCode::InvalidInput, "reach must be at least 0");
   if (!(options.corner_angle > 0)) throw Error(ErrorCode::InvalidInput, "corner_angle must be greater than 0");
   if (surface.empty()) throw Error(ErrorCode::InvalidInput, "a surface without faces has no layout");

@@ -131,7 +131,7 @@ TEST(LayoutTransfer, ManyCurvesThroughFewTriangles) {
 }
 
 TEST(LayoutTransfer, ScansGetTheirOwnLayoutsAgain) {
-  if (real_models().empty()) GTEST_SKIP() << "no models";
+  if (real_models().empty()) GTEST_SKIP() << no_models();
   for (const auto& path : real_models()) {
     SCOPED_TRACE(path.stem().string());
     const TriangleSurface surface = unit(repaired(read_polygon_soup(path.string())));

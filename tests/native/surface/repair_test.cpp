@@ -435,7 +435,7 @@ TEST(Repair, ManySheetsAtOneEdge) {
 
 TEST(Repair, RealModels) {
   const auto models = real_models();
-  if (models.empty()) GTEST_SKIP() << "no models";
+  if (models.empty()) GTEST_SKIP() << no_models();
   for (const auto& path : models) {
     SCOPED_TRACE(path.string());
     const PolygonSoup soup = read_polygon_soup(path.string());

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the user is and looks: mode, selection, 3D views."""
+
+import bpy
+import mathutils
+
+from ...bridge import objects
+
+
+def to_object_mode(context):
+    if objects.active(context) is not None and context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def select_only(context, obj):
+    for other in list(context.view_layer.objects.selected):
+        other.select_set(False)
+    obj.select_set(True)
+    context.view_layer.objects.active = obj
+
+
+def look_at(context, surface, place, size):
+    """Turns the 3D views of the window to a place, from outside the surface."""
+    if context.window is None:
+        return
+    inverse = surface.matrix_world.inverted_safe()
+    try:
+        found, _, normal, _ = surface.evaluated_get(context.evaluated_depsgraph_get()).closest_point_on_mesh(inverse @ place)
+    except RuntimeError:  # It has no faces any more.
+        found = False
+    outward = (inverse.to_3x3().transposed() @ normal).normalized() if found else None
+    for area in context.window.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        view = area.spaces.active.region_3d
+        if view.view_perspective == "CAMERA":
+            view.view_perspective = "PERSP"
+        toward = view.view_rotation @ mathutils.Vector((0, 0, 1))
+        if outward is not None and toward.dot(outward) < 0.5:
+            view.view_rotation = outward.to_track_quat("Z", "Y")
+        view.view_location = place
+        view.view_distance = 10 * size
