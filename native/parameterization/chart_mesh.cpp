@@ -154,6 +154,13 @@ void ChartMesh::quadrisect() {
   scale *= 2;
 }
 
+std::vector<int> ChartMesh::movable_vertices() const {
+  std::vector<int> vertices;
+  for (int v = 0; v < static_cast<int>(points.size()); ++v)
+    if (mesh.vertex_alive(v) && movable(v)) vertices.push_back(v);
+  return vertices;
+}
+
 const FlatTriangle& ChartMesh::flat(int f) const {
   if (flat_.size() != chart.size()) flat_.resize(chart.size());
   Flat& known = flat_[f];
@@ -178,6 +185,29 @@ bool ChartMesh::can_collapse(int h) const {
   const int v = mesh.from(h);
   if (kind[v] == Kind::Cone || kind[v] == Kind::Pinned) return false;
   return mesh.can_collapse(h);
+}
+
+bool ChartMesh::collapse_keeps_map(int h, double least_determinant, double least_shape) const {
+  const int v = mesh.from(h), u = mesh.to(h);
+  const Complex target = corner[h].back(at(EditMesh::next(h)));
+  bool good = true;
+  double fan = 0;  // the angle that the new triangles fill at u
+  for_star(v, [&](int g, const Complex& a, const Complex& b) {
+    const int p = mesh.to(g), q = mesh.apex(g);
+    if (!good || p == u || q == u) return;
+    const Vec3 x = points[p] - points[u], y = points[q] - points[u];
+    const double area = x.cross(y).norm(), sum = x.squaredNorm() + y.squaredNorm() + (x - y).squaredNorm();
+    if (!(area > least_shape * sum)) {
+      good = false;
+      return;
+    }
+    const double signed_area = 0.5 * cross(b - a, target - a);
+    if (!(signed_area > least_determinant * 0.5 * area * scale * scale)) good = false;
+    fan += std::arg((b - target) * std::conj(a - target));
+  });
+  // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen, and u become
+  // such a cone.
+  return good && fan < (kind[u] == Kind::Cone ? 3.0 : 4.0);
 }
 
 void ChartMesh::collapse(int h) {

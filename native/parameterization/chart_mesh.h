@@ -61,12 +61,15 @@ class ChartMesh {
 
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
+  std::vector<int> movable_vertices() const;  // that are alive
   const FlatTriangle& flat(int f) const;      // remembered until the face or the scale changes
   void move_point(int v, const Vec3& place);  // on the surface
   double determinant(int f) const;            // of the map from the flattened triangle
   double angle_at(int v) const;               // sum of the triangles' angles in the charts
 
   bool can_collapse(int h) const;  // keeps cones, pinned vertices and boundaries; says nothing of the map
+  // Would the triangles of from(h)'s star stay counter-clockwise, with determinants and 3D shapes not below the bounds?
+  bool collapse_keeps_map(int h, double least_determinant, double least_shape) const;
   void collapse(int h);
   // Puts from(h) back, at a place where its triangles are counter-clockwise. Returns false if there is none: the vertex is back, but its star is
   // folded.

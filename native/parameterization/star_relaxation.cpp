@@ -169,4 +169,30 @@ bool StarRelaxation::unfold(const std::vector<int>& vertices, int sweeps) {
   return is_unfolded(vertices);
 }
 
+void StarRelaxation::relax_squeezed(double least, int sweeps, const Progress& progress) {
+  std::vector<int> around;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::vector<char> chosen(c_.points.size(), 0);
+    bool any = false;
+    for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f)
+      if (c_.mesh.alive[f] && c_.determinant(f) < least) {
+        any = true;
+        for (int i = 0; i < 3; ++i) chosen[c_.mesh.origin[3 * f + i]] = 1;
+      }
+    if (!any) break;
+    for (int ring = 0; ring < 3; ++ring) {
+      std::vector<char> grown = chosen;
+      for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f) {
+        if (!c_.mesh.alive[f]) continue;
+        const int* v = &c_.mesh.origin[3 * f];
+        if (chosen[v[0]] || chosen[v[1]] || chosen[v[2]]) grown[v[0]] = grown[v[1]] = grown[v[2]] = 1;
+      }
+      chosen.swap(grown);
+    }
+    for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+      if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) relax(v, true);
+    progress((sweep + 1.0) / sweeps);
+  }
+}
+
 }  // namespace hybrid_mesh

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/context.h"
 #include "parameterization/chart_mesh.h"
 
 namespace hybrid_mesh {
@@ -20,6 +21,9 @@ class StarRelaxation {
   void relax(int v, bool lengthen);
   // The same for an energy that is finite for folded triangles: their determinant D is replaced by (D + sqrt(eps^2 + D^2)) / 2.
   void relax_folded(int v, double eps);
+  // Relaxes the vertices around triangles of a determinant below `least`, until there are none or for so many sweeps: a line search over all vertices
+  // would stall on them.
+  void relax_squeezed(double least, int sweeps, const Progress& progress);
   // Every face counter-clockwise and no vertex but a cone wound around more than once.
   bool is_unfolded(const std::vector<int>& vertices) const;
   // Unfolds the stars of the given vertices by moving those of them that can move, in at most so many sweeps. Returns whether it did.
