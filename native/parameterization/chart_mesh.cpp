@@ -162,18 +162,28 @@ std::vector<int> ChartMesh::movable_vertices() const {
 }
 
 const FlatTriangle& ChartMesh::flat(int f) const {
-  if (flat_.size() != chart.size()) flat_.resize(chart.size());
-  Flat& known = flat_[f];
-  const std::array<int, 3> corners{mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]};
-  if (known.corners != corners || known.scale != scale)
-    known = {corners, scale, flatten(points[corners[0]], points[corners[1]], points[corners[2]], scale)};
+  if (flat_at_.size() != chart.size()) flat_at_.resize(chart.size(), -1);
+  if (flat_at_[f] < 0) {
+    flat_at_[f] = static_cast<std::int32_t>(flat_.size());
+    flat_.emplace_back();
+  }
+  Flat& known = flat_[flat_at_[f]];
+  const int a = mesh.origin[3 * f], b = mesh.origin[3 * f + 1], c = mesh.origin[3 * f + 2];
+  if (known.corners[0] != a || known.corners[1] != b || known.corners[2] != c || known.scale != scale)
+    known = {{a, b, c}, scale, flatten(points[a], points[b], points[c], scale)};
   return known.triangle;
+}
+
+void ChartMesh::remember_flat() const {
+  flat_.reserve(mesh.face_count);
+  for (int f = 0; f < static_cast<int>(mesh.alive.size()); ++f)
+    if (mesh.alive[f]) flat(f);
 }
 
 void ChartMesh::move_point(int v, const Vec3& place) {
   points[v] = place;
-  for (int f = 0; f < static_cast<int>(flat_.size()); ++f)
-    if (std::find(flat_[f].corners.begin(), flat_[f].corners.end(), v) != flat_[f].corners.end()) flat_[f].corners = {-1, -1, -1};
+  for (Flat& known : flat_)
+    if (std::find(known.corners.begin(), known.corners.end(), v) != known.corners.end()) known.corners = {-1, -1, -1};
 }
 
 double ChartMesh::determinant(int f) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "parameterization/cone_motion.h"
+#include "parameterization/relaxation_sweeps.h"
 
 namespace hybrid_mesh {
 
@@ -54,9 +55,9 @@ void CollapseHierarchy::collapse(int target) {
         h = c_.mesh.ccw(h);
       } while (h >= 0 && h != c_.mesh.out[v]);
       std::sort(halves.begin(), halves.end());
-      for (std::size_t i = 0; i < std::min<std::size_t>(3, halves.size()); ++i) {
+      for (std::size_t i = 0; i < std::min(collapses_.ways, halves.size()); ++i) {
         const int half = halves[i].second;
-        if (!c_.can_collapse(half) || !c_.collapse_keeps_map(half, 0.05, 0.03)) continue;
+        if (!c_.can_collapse(half) || !c_.collapse_keeps_map(half, collapses_.determinant, collapses_.shape)) continue;
         c_.mesh.ring(v, ring);
         for (const int w : ring) locked[w] = 1;
         c_.collapse(half);
@@ -65,7 +66,7 @@ void CollapseHierarchy::collapse(int target) {
       }
       if (c_.mesh.vertex_count <= target) break;
     }
-    if (log_.size() - before < 0.005 * c_.mesh.vertex_count + 1) {
+    if (log_.size() - before < collapses_.least_gone * c_.mesh.vertex_count + 1) {
       if (log_.size() > before) levels_.push_back(log_.size());
       break;
     }
@@ -85,81 +86,90 @@ void CollapseHierarchy::resume(const std::vector<int>& log) {
   std::reverse(levels_.begin(), levels_.end());
 }
 
-void CollapseHierarchy::sweep(int count, const std::vector<int>& vertices, const Progress& progress) {
-  for (int i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-      if (k % 4096 == 0) progress.check();
-      stars_.relax(vertices[i % 2 == 0 ? k : vertices.size() - 1 - k], false);
-    }
-  }
-}
-
 void CollapseHierarchy::refine(const Progress& progress) {
   int swept = c_.mesh.vertex_count;
   for (std::size_t level = levels_.size(); level-- > 0;) {
     const std::size_t begin = level > 0 ? levels_[level - 1] : 0;
     while (log_.size() > begin) {
-      const int h = log_.back();
-      log_.pop_back();
       if (log_.size() % 4096 == 0) progress.check();
-      const int v = c_.mesh.from(h);
-      bool placed = c_.undo_collapse(h);
-      const int kept = c_.mesh.to(h);
-      for (int tries = 0; tries < 3 && !placed && c_.kind[kept] == ChartMesh::Kind::Cone; ++tries) {
-        // The vertex would come back into a fan of a full turn or more, for which a cone has room: the cone has to give way.
-        c_.collapse(h);
-        const bool evicted = evict_cone(c_, density_, kept) >= 0;
-        placed = c_.undo_collapse(h);
-        if (!evicted) break;
-      }
-      std::vector<Complex> before;
-      if (!placed) before = c_.uv;
-      // Where its ring has no kernel, the ring is given the chance to become rounder first.
-      for (int tries = 0; tries < 3 && !placed && !unfolds_around(v, 2, 24); ++tries) {
-        c_.collapse(h);
-        std::vector<int> region{kept};
-        c_.mesh.grow(region, 2 + tries);
-        for (int sweep = 0; sweep < 10; ++sweep)
-          for (const int w : region)
-            if (c_.movable(w)) stars_.relax(w, true);
-        placed = c_.undo_collapse(h);
-      }
-      if (!placed && options_.corners_move && !corners_.near(v).empty()) {
-        // Collapsed again, the map is unfolded as it was.
-        const auto take_back = [&] {
-          c_.collapse(h);
-          c_.uv = before;
-        };
-        take_back();
-        placed = corners_.move_near(kept, [&](int) {
-          before = c_.uv;
-          if (c_.undo_collapse(h) || unfolds_around(v, 2, 24)) return true;
-          take_back();
-          return false;
-        });
-        if (!placed) placed = c_.undo_collapse(h);
-      }
-      if (!placed) {
-        ++report_.unplaced;
-        untangle(v);
-      }
-      make_room(v);
+      undo_last();
     }
-    // A full sweep whenever the mesh has grown by half, and at the end.
-    if (c_.mesh.vertex_count > 1.5 * swept || level == 0) {
-      sweep(options_.sweeps, c_.movable_vertices(), progress);
+    if (c_.mesh.vertex_count > placement_.growth * swept || level == 0) {
+      // What is left rough by one sweep is smoothed on finer meshes.
+      relax_in_sweeps(c_, density_, level == 0 ? options_.sweeps : 1, progress);
       swept = c_.mesh.vertex_count;
-      for (int round = 0; round < 2; ++round) report_.cone_moves += move_cones(c_, density_, allowed_);
+      const int rounds = std::clamp(options_.cone_rounds - 1, 0, 2);
+      for (int round = 0; round < rounds; ++round) report_.cone_moves += move_cones(c_, density_, allowed_);
     }
     progress(1 - static_cast<double>(level) / levels_.size());
   }
+}
+
+void CollapseHierarchy::undo_last() {
+  const int h = log_.back(), v = c_.mesh.from(h);
+  log_.pop_back();
+  const bool placed = c_.undo_collapse(h) || undo_past_cone(h);
+  if (!placed) {
+    const bool corner_near = options_.corners_move && !corners_.near(v).empty();
+    const std::vector<Complex> before = corner_near ? c_.uv : std::vector<Complex>();
+    if (!undo_with_rounder_ring(h) && !(corner_near && undo_past_corners(h, before))) {
+      ++report_.unplaced;
+      untangle(v);
+    }
+  }
+  make_room(v);
+}
+
+// The vertex would come back into a fan of a full turn or more, for which a cone has room: the cone has to give way.
+bool CollapseHierarchy::undo_past_cone(int h) {
+  const int kept = c_.mesh.to(h);
+  for (int tries = 0; tries < placement_.cone_tries && c_.kind[kept] == ChartMesh::Kind::Cone; ++tries) {
+    c_.collapse(h);
+    const bool evicted = evict_cone(c_, density_, kept) >= 0;
+    if (c_.undo_collapse(h)) return true;
+    if (!evicted) return false;
+  }
+  return false;
+}
+
+// Where its ring has no kernel, the ring is given the chance to become rounder first. False, too, where the map unfolded with the vertex in a place
+// that is not its star's kernel.
+bool CollapseHierarchy::undo_with_rounder_ring(int h) {
+  const int v = c_.mesh.from(h), kept = c_.mesh.to(h);
+  for (int tries = 0; tries < placement_.ring_tries && !unfolds_around(v, placement_.rings, placement_.patience); ++tries) {
+    c_.collapse(h);
+    std::vector<int> region{kept};
+    c_.mesh.grow(region, placement_.rings + tries);
+    for (int sweep = 0; sweep < placement_.ring_sweeps; ++sweep)
+      for (const int w : region)
+        if (c_.movable(w)) stars_.relax(w, true);
+    if (c_.undo_collapse(h)) return true;
+  }
+  return false;
+}
+
+// Moves corners of the boundary near it. `before`: positions with which the map is unfolded once the vertex is gone.
+bool CollapseHierarchy::undo_past_corners(int h, std::vector<Complex> before) {
+  const int v = c_.mesh.from(h), kept = c_.mesh.to(h);
+  const auto take_back = [&] {
+    c_.collapse(h);
+    c_.uv = before;
+  };
+  take_back();
+  const bool placed = corners_.move_near(kept, [&](int) {
+    before = c_.uv;
+    if (c_.undo_collapse(h) || unfolds_around(v, placement_.rings, placement_.patience)) return true;
+    take_back();
+    return false;
+  });
+  return placed || c_.undo_collapse(h);
 }
 
 // Relaxes a vertex that has just come back, and where its triangles are squeezed its neighbours with it: the next ones to come back there would be
 // squeezed more and more.
 void CollapseHierarchy::make_room(int v) {
   std::vector<int> ring;
-  for (int tries = 0; tries < 6; ++tries) {
+  for (int tries = 0; tries < placement_.room_tries; ++tries) {
     stars_.relax(v, tries > 0);
     double least = 1e300;
     int h = c_.mesh.out[v];
@@ -167,7 +177,7 @@ void CollapseHierarchy::make_room(int v) {
       least = std::min(least, c_.determinant(h / 3));
       h = c_.mesh.ccw(h);
     } while (h >= 0 && h != c_.mesh.out[v]);
-    if (least > 0.1) return;
+    if (least > placement_.room) return;
     c_.mesh.ring(v, ring);
     for (const int w : ring)
       if (c_.movable(w)) stars_.relax(w, true);
@@ -182,8 +192,8 @@ bool CollapseHierarchy::unfolds_around(int v, int rings, int sweeps) {
 }
 
 void CollapseHierarchy::untangle(int v) {
-  for (int rings = 2; rings < 7; ++rings)
-    if (unfolds_around(v, rings, rings < 4 ? 24 : 150)) return;
+  for (int rings = placement_.rings; rings <= placement_.most_rings; ++rings)
+    if (unfolds_around(v, rings, rings < placement_.patient_rings ? placement_.patience : placement_.long_patience)) return;
   throw Error(ErrorCode::Internal, "the map could not be carried to a finer mesh");
 }
 

@@ -42,7 +42,9 @@ GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, con
   progress(0.3);
   report.coarse_vertices = charts.mesh.vertex_count;
   const auto descend = [&](int steps, const Progress& part) {
-    const int taken = newton_descent(charts, density, steps, part);
+    NewtonOptions newton;
+    newton.steps = steps;
+    const int taken = newton_descent(charts, density, newton, part);
     if (taken > 0) report.newton_steps = taken;
   };
   descend(options.newton_steps, progress.part(0.3, 0.45));

@@ -23,12 +23,6 @@ struct FoldedDistortion {
 
 }  // namespace
 
-double StarRelaxation::triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const {
-  const Complex a = t.alpha[0] * p0 + t.alpha[1] * p1 + t.alpha[2] * p2;
-  const Complex b = std::conj(t.alpha[0]) * p0 + std::conj(t.alpha[1]) * p1 + std::conj(t.alpha[2]) * p2;
-  return t.area * density_.value(std::norm(a), std::norm(b));
-}
-
 void StarRelaxation::gather(int v) {
   star_.clear();
   c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
@@ -42,7 +36,7 @@ double StarRelaxation::star_energy(const Complex& p) const {
   double sum = 0;
   for (const Spoke& s : star_) {
     if (!(cross(s.a - p, s.b - p) > 0)) return 1e300;
-    sum += triangle_energy(s.t, p, s.a, s.b);
+    sum += density_.of(s.t, p, s.a, s.b);
   }
   return sum;
 }

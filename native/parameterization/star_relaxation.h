@@ -14,8 +14,7 @@ class StarRelaxation {
  public:
   StarRelaxation(ChartMesh& charts, const Distortion& density) : c_(charts), density_(density) {}
 
-  double triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const;
-  double face_energy(int f) const { return triangle_energy(c_.flat(f), c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2)); }
+  double face_energy(int f) const { return density_.of(c_.flat(f), c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2)); }
 
   // One Newton step on v's position, shortened until the energy falls and no triangle folds; with `lengthen` doubled as long as that gains.
   void relax(int v, bool lengthen);

@@ -23,8 +23,11 @@ struct Candidate {
 // The heap's order: the cheapest on top. Costs may tie, vertices do not.
 bool is_dearer(const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost > b.cost : a.vertex > b.vertex; }
 
-// Flips begin, and the order of collapses is kept exact, when so many times the faces asked for are left.
-constexpr double kExactFaces = 12;
+// When so many times the faces asked for are left, flips begin.
+constexpr double kFlipFaces = 12;
+// From so many faces on the order of collapses is kept exact, so that the base does not depend on how the queue works; before that single collapses
+// of a fine surface matter little, and exactness would take two thirds of the time.
+constexpr int kExactFaces = 120000;
 
 // A number in [0, 1) that depends on the seed and the vertex alone.
 double jitter(std::uint64_t seed, int v) {
@@ -53,7 +56,7 @@ class Decimation {
 
   void run(const Progress& progress) {
     const int initial = mesh_.face_count;
-    int next_flips = static_cast<int>(0.7 * std::min<double>(initial, kExactFaces * options_.target_faces));
+    int next_flips = static_cast<int>(0.7 * std::min<double>(initial, kFlipFaces * options_.target_faces));
     refill();
     int steps = 0;
     while (mesh_.face_count > options_.target_faces || loose_ > 0) {
@@ -230,7 +233,7 @@ class Decimation {
   // What changes around a vertex makes its cost in the heap a stale one, which is found out only when it comes to the top: of the seven vertices
   // around a collapse most change again before that, and costs seldom fall. Where the base takes shape costs are kept exact.
   enum class Queued : char { No, Fresh, Stale };
-  bool keeps_exact() const { return mesh_.face_count <= kExactFaces * options_.target_faces; }
+  bool keeps_exact() const { return mesh_.face_count <= kExactFaces; }
 
   void push(Candidate candidate) {
     const int v = candidate.vertex;
