@@ -95,8 +95,7 @@ void CollapseHierarchy::refine(const Progress& progress) {
       undo_last();
     }
     if (c_.mesh.vertex_count > placement_.growth * swept || level == 0) {
-      // What is left rough by one sweep is smoothed on finer meshes.
-      relax_in_sweeps(c_, density_, level == 0 ? options_.sweeps : 1, progress);
+      relax_in_sweeps(c_, density_, options_.sweeps, progress);
       swept = c_.mesh.vertex_count;
       const int rounds = std::clamp(options_.cone_rounds - 1, 0, 2);
       for (int round = 0; round < rounds; ++round) report_.cone_moves += move_cones(c_, density_, allowed_);

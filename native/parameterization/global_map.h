@@ -12,7 +12,7 @@ struct GlobalMapOptions {
   int newton_steps = 15;
   int cone_rounds = 10;      // of moving irregular nodes on the coarse mesh, at most; with one round they stay on the way back
   bool corners_move = true;  // irregular nodes on the boundary, along it
-  int sweeps = 3;            // of vertex-wise relaxation on the fine mesh; one a level on the way back to it
+  int sweeps = 3;            // of vertex-wise relaxation a level, on the way back to the fine mesh
 };
 
 struct GlobalMapReport {

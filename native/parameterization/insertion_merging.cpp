@@ -14,6 +14,22 @@ double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - 
 
 constexpr const char* kCutStays = "a cut of the surface cannot be undone in the map";
 
+// Where the vertices of a region are that only grows, each noted before it can have moved: to come back to.
+class KeptPositions {
+ public:
+  explicit KeptPositions(ChartMesh& charts) : charts_(charts) {}
+  void note(const std::vector<int>& region) {
+    while (kept_.size() < region.size()) kept_.push_back(charts_.uv[region[kept_.size()]]);
+  }
+  void restore(const std::vector<int>& region) const {
+    for (std::size_t i = 0; i < kept_.size(); ++i) charts_.uv[region[i]] = kept_[i];
+  }
+
+ private:
+  ChartMesh& charts_;
+  std::vector<Complex> kept_;
+};
+
 }  // namespace
 
 InsertionMerging::InsertionMerging(ChartMesh& charts, const Distortion& density, const PatchedSurface& surface)
@@ -119,20 +135,21 @@ void InsertionMerging::settle(int cone) {
   for (const auto& [cost, half] : halves) {
     const int w = c_.mesh.from(half);
     std::vector<int> region{cone};
-    const std::vector<Complex> before = c_.uv;
+    KeptPositions kept(c_);
     const int seen_from = EditMesh::prev(half);
     const Complex place = c_.corner[seen_from].back(c_.at(half));
     c_.collapse(half);
     c_.mesh.grow(region, 1);
     for (int rings = 0; rings < 3; ++rings) {
       if (rings > 0) c_.mesh.grow(region, 1);
+      kept.note(region);
       if (!stars_.unfold(region)) continue;
       c_.move_point(cone, c_.points[w]);
       source_[cone] = source_[w];
       original_[cone] = 1;
       return;
     }
-    c_.uv = before;
+    kept.restore(region);
     c_.undo_collapse(half);
     if (c_.kind[c_.mesh.origin[seen_from]] == ChartMesh::Kind::Cone) break;
     c_.uv[w] = c_.corner[seen_from](place);
@@ -198,7 +215,7 @@ bool InsertionMerging::unfolds_when_merged(int v, int pass) {
     std::vector<int> region{v};
     c_.mesh.grow(region, 1);
     region.erase(region.begin());
-    const std::vector<Complex> before = c_.uv;
+    KeptPositions kept(c_);
     // Where v is, seen from another corner of its face: its own frame is lost.
     const int seen_from = c_.kind[c_.mesh.to(half)] != ChartMesh::Kind::Cone ? EditMesh::next(half) : EditMesh::prev(half);
     const Complex place = c_.corner[seen_from].back(c_.at(half));
@@ -207,9 +224,10 @@ bool InsertionMerging::unfolds_when_merged(int v, int pass) {
     // More room and patience with those that resist.
     for (int rings = 0; rings < (pass < 3 ? 3 : 6); ++rings) {
       if (rings > 0) c_.mesh.grow(region, 1);
+      kept.note(region);
       if (stars_.unfold(region, pass < 3 ? 24 : 120)) return true;
     }
-    c_.uv = before;
+    kept.restore(region);
     const bool placed = c_.undo_collapse(half);
     if (known && !c_.mesh.is_boundary(v)) c_.uv[v] = c_.corner[seen_from](place);
     if (!placed && !known) break;
