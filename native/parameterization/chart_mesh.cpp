@@ -154,19 +154,36 @@ void ChartMesh::quadrisect() {
   scale *= 2;
 }
 
+std::vector<int> ChartMesh::movable_vertices() const {
+  std::vector<int> vertices;
+  for (int v = 0; v < static_cast<int>(points.size()); ++v)
+    if (mesh.vertex_alive(v) && movable(v)) vertices.push_back(v);
+  return vertices;
+}
+
 const FlatTriangle& ChartMesh::flat(int f) const {
-  if (flat_.size() != chart.size()) flat_.resize(chart.size());
-  Flat& known = flat_[f];
-  const std::array<int, 3> corners{mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]};
-  if (known.corners != corners || known.scale != scale)
-    known = {corners, scale, flatten(points[corners[0]], points[corners[1]], points[corners[2]], scale)};
+  if (flat_at_.size() != chart.size()) flat_at_.resize(chart.size(), -1);
+  if (flat_at_[f] < 0) {
+    flat_at_[f] = static_cast<std::int32_t>(flat_.size());
+    flat_.emplace_back();
+  }
+  Flat& known = flat_[flat_at_[f]];
+  const int a = mesh.origin[3 * f], b = mesh.origin[3 * f + 1], c = mesh.origin[3 * f + 2];
+  if (known.corners[0] != a || known.corners[1] != b || known.corners[2] != c || known.scale != scale)
+    known = {{a, b, c}, scale, flatten(points[a], points[b], points[c], scale)};
   return known.triangle;
+}
+
+void ChartMesh::remember_flat() const {
+  flat_.reserve(mesh.face_count);
+  for (int f = 0; f < static_cast<int>(mesh.alive.size()); ++f)
+    if (mesh.alive[f]) flat(f);
 }
 
 void ChartMesh::move_point(int v, const Vec3& place) {
   points[v] = place;
-  for (int f = 0; f < static_cast<int>(flat_.size()); ++f)
-    if (std::find(flat_[f].corners.begin(), flat_[f].corners.end(), v) != flat_[f].corners.end()) flat_[f].corners = {-1, -1, -1};
+  for (Flat& known : flat_)
+    if (std::find(known.corners.begin(), known.corners.end(), v) != known.corners.end()) known.corners = {-1, -1, -1};
 }
 
 double ChartMesh::determinant(int f) const {
@@ -178,6 +195,29 @@ bool ChartMesh::can_collapse(int h) const {
   const int v = mesh.from(h);
   if (kind[v] == Kind::Cone || kind[v] == Kind::Pinned) return false;
   return mesh.can_collapse(h);
+}
+
+bool ChartMesh::collapse_keeps_map(int h, double least_determinant, double least_shape) const {
+  const int v = mesh.from(h), u = mesh.to(h);
+  const Complex target = corner[h].back(at(EditMesh::next(h)));
+  bool good = true;
+  double fan = 0;  // the angle that the new triangles fill at u
+  for_star(v, [&](int g, const Complex& a, const Complex& b) {
+    const int p = mesh.to(g), q = mesh.apex(g);
+    if (!good || p == u || q == u) return;
+    const Vec3 x = points[p] - points[u], y = points[q] - points[u];
+    const double area = x.cross(y).norm(), sum = x.squaredNorm() + y.squaredNorm() + (x - y).squaredNorm();
+    if (!(area > least_shape * sum)) {
+      good = false;
+      return;
+    }
+    const double signed_area = 0.5 * cross(b - a, target - a);
+    if (!(signed_area > least_determinant * 0.5 * area * scale * scale)) good = false;
+    fan += std::arg((b - target) * std::conj(a - target));
+  });
+  // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen, and u become
+  // such a cone.
+  return good && fan < (kind[u] == Kind::Cone ? 3.0 : 4.0);
 }
 
 void ChartMesh::collapse(int h) {

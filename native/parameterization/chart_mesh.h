@@ -2,6 +2,8 @@
 // Based on: Khodakovsky, Litke, Schroeder, Globally smooth parameterizations with low distortion, 2003 (charts with transition functions).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "parameterization/distortion.h"
@@ -61,12 +63,18 @@ class ChartMesh {
 
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
-  const FlatTriangle& flat(int f) const;      // remembered until the face or the scale changes
+  std::vector<int> movable_vertices() const;  // that are alive
+  // Remembered until the face or the scale changes; good until it is asked for another face's.
+  const FlatTriangle& flat(int f) const;
+  // Remembers those of all faces that are alive: as long as nothing but positions changes, flat() only reads, and may be called from several threads.
+  void remember_flat() const;
   void move_point(int v, const Vec3& place);  // on the surface
   double determinant(int f) const;            // of the map from the flattened triangle
   double angle_at(int v) const;               // sum of the triangles' angles in the charts
 
   bool can_collapse(int h) const;  // keeps cones, pinned vertices and boundaries; says nothing of the map
+  // Would the triangles of from(h)'s star stay counter-clockwise, with determinants and 3D shapes not below the bounds?
+  bool collapse_keeps_map(int h, double least_determinant, double least_shape) const;
   void collapse(int h);
   // Puts from(h) back, at a place where its triangles are counter-clockwise. Returns false if there is none: the vertex is back, but its star is
   // folded.
@@ -99,7 +107,9 @@ class ChartMesh {
     double scale = 0;
     FlatTriangle triangle;
   };
-  mutable std::vector<Flat> flat_;  // per face
+  // In the order in which they were first asked for: of the faces of a mesh that is to be uncollapsed few are alive.
+  mutable std::vector<Flat> flat_;
+  mutable std::vector<std::int32_t> flat_at_;  // per face, -1: never asked for
 };
 
 }  // namespace hybrid_mesh

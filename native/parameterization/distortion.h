@@ -60,6 +60,12 @@ struct Distortion {
     const double d = s - t;
     return (1 - theta) * (s + t) / d + theta * 0.5 * (d + 1 / d);
   }
+  // Of a triangle whose corners are mapped there, times its area.
+  double of(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const {
+    const Complex a = t.alpha[0] * p0 + t.alpha[1] * p1 + t.alpha[2] * p2;
+    const Complex b = std::conj(t.alpha[0]) * p0 + std::conj(t.alpha[1]) * p1 + std::conj(t.alpha[2]) * p2;
+    return t.area * value(std::norm(a), std::norm(b));
+  }
   Derivatives operator()(double s, double t) const {
     const double d = s - t, i = 1 / d, i2 = i * i, i3 = i2 * i, m = 1 - theta;
     const double g = 0.5 * theta * (1 - i2), gg = theta * i3;

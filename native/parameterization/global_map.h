@@ -10,7 +10,7 @@ struct GlobalMapOptions {
   double theta = 0.5;           // see Distortion: small for right angles, large for even size
   double vertices_a_quad = 15;  // of the coarse mesh on which the map is found
   int newton_steps = 15;
-  int cone_rounds = 10;      // of moving irregular nodes on the coarse mesh, at most
+  int cone_rounds = 10;      // of moving irregular nodes on the coarse mesh, at most; with one round they stay on the way back
   bool corners_move = true;  // irregular nodes on the boundary, along it
   int sweeps = 3;            // of vertex-wise relaxation a level, on the way back to the fine mesh
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameterization/patch_extraction.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -76,26 +78,20 @@ class Extraction {
 
   std::vector<PatchMap> run(const Progress& progress) {
     round();
-    maps_.resize(surface_.patch_count());
-    index_.resize(surface_.patch_count());
-    borders_.resize(surface_.patch_count());
-    flood(progress.part(0, 0.8));
-    finish_sides();
-    for (std::size_t q = 0; q < maps_.size(); ++q) {
-      double area = 0;
-      const PatchMap& m = maps_[q];
-      for (const auto& t : m.triangles) {
-        const Vec2 a = m.uv[t[1]] - m.uv[t[0]], b = m.uv[t[2]] - m.uv[t[0]];
-        area += 0.5 * (a.x() * b.y() - a.y() * b.x());
-      }
-      if (!(std::abs(area - 1) < 1e-6))
-        throw Error(ErrorCode::Internal, "the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
-    }
+    parts_.resize(surface_.patch_count());
+    flood(progress.part(0, 0.5));
+    std::vector<PatchMap> maps(surface_.patch_count());
+    tbb::parallel_for(0, surface_.patch_count(), [&](int q) {
+      progress.check();
+      maps[q] = extract(q);
+    });
     progress(1);
-    return std::move(maps_);
+    return maps;
   }
 
  private:
+  using Corners = std::array<GridPoint, 3>;
+
   GridPoint grid_at(int h) const { return apply(c_.corner[h], grid_[c_.mesh.origin[h]]); }
 
   // Free points keep off the integer lines by a little: nothing but pinned and boundary points lies on them exactly.
@@ -144,9 +140,10 @@ class Extraction {
   }
 
   // The part of a triangle inside the unit square.
-  std::vector<Piece> clip(const std::array<GridPoint, 3>& p) const {
+  static std::vector<Piece> clip(const Corners& p) {
     std::vector<Piece> polygon, out;
     for (int i = 0; i < 3; ++i) polygon.push_back({Piece::Kind::Vertex, i, -1, p[i], 0, 1, i});
+    if (is_inside(p)) return polygon;
     for (int side = 0; side < 4; ++side) {
       out.clear();
       const std::size_t n = polygon.size();
@@ -200,7 +197,48 @@ class Extraction {
     int patch;
     Transition to_patch;  // from the face's chart
   };
+  // What a face has in a patch.
+  struct Part {
+    int face;
+    Transition to_patch;
+  };
+  struct Border {
+    int side, from, to;
+  };
+  // A patch's map while it grows.
+  struct Growing {
+    PatchMap map;
+    std::unordered_map<std::uint64_t, int> index;
+    std::vector<Border> borders;
+  };
 
+  Corners corners_in(int f, const Transition& to_patch) const {
+    return {apply(to_patch, grid_at(3 * f)), apply(to_patch, grid_at(3 * f + 1)), apply(to_patch, grid_at(3 * f + 2))};
+  }
+  static bool is_inside(const Corners& p) {
+    return std::all_of(p.begin(), p.end(), [](const GridPoint& x) { return x.x > 0 && x.x < kOne && x.y > 0 && x.y < kOne; });
+  }
+
+  PatchMap extract(int q) const {
+    Growing growing;
+    growing.index.reserve(parts_[q].size());
+    for (const Part& part : parts_[q]) {
+      const Corners p = corners_in(part.face, part.to_patch);
+      add_piece(part.face, p, clip(p), growing);
+    }
+    finish_sides(q, growing);
+    double area = 0;
+    const PatchMap& m = growing.map;
+    for (const auto& t : m.triangles) {
+      const Vec2 a = m.uv[t[1]] - m.uv[t[0]], b = m.uv[t[2]] - m.uv[t[0]];
+      area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+    }
+    if (!(std::abs(area - 1) < 1e-6))
+      throw Error(ErrorCode::Internal, "the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
+    return std::move(growing.map);
+  }
+
+  // Finds the parts of all patches: from face to face, and from patch to patch where a face reaches over a side.
   void flood(const Progress& progress) {
     const int faces = static_cast<int>(c_.mesh.alive.size());
     std::vector<Visit> seed(faces, Visit{-1, {}});
@@ -237,20 +275,23 @@ class Extraction {
     if (done != c_.mesh.face_count) throw Error(ErrorCode::Internal, "the map leaves faces uncovered");
   }
 
-  // Adds all pieces of a face, from a patch that it overlaps on; calls `reach` for each of its edges with a patch that holds a part of it.
+  // Notes all parts of a face, from a patch that it overlaps on; calls `reach` for each of its edges with a patch that holds a part of it.
   template <class Reach>
   void cut(int f, const Visit& first, const Reach& reach) {
+    if (is_inside(corners_in(f, first.to_patch))) {
+      parts_[first.patch].push_back({f, first.to_patch});
+      for (int edge = 0; edge < 3; ++edge) reach(edge, first);
+      return;
+    }
     std::vector<Visit> visits{first};
-    const std::array<GridPoint, 3> own{grid_at(3 * f), grid_at(3 * f + 1), grid_at(3 * f + 2)};
     for (std::size_t i = 0; i < visits.size(); ++i) {
       const Visit visit = visits[i];
-      const std::array<GridPoint, 3> p{apply(visit.to_patch, own[0]), apply(visit.to_patch, own[1]), apply(visit.to_patch, own[2])};
-      const std::vector<Piece> polygon = clip(p);
+      const std::vector<Piece> polygon = clip(corners_in(f, visit.to_patch));
       if (polygon.empty()) {
         if (i == 0) throw Error(ErrorCode::Internal, "the map's faces do not follow its patches");
         continue;
       }
-      add_piece(f, visit, p, polygon);
+      parts_[visit.patch].push_back({f, visit.to_patch});
       for (std::size_t k = 0; k < polygon.size(); ++k) {
         const Piece &x = polygon[k], &y = polygon[(k + 1) % polygon.size()];
         // The side that the polygon's edge lies on: by clipping, or because an edge of the mesh runs along it.
@@ -276,9 +317,9 @@ class Extraction {
     }
   }
 
-  void add_piece(int f, const Visit& visit, const std::array<GridPoint, 3>& p, const std::vector<Piece>& polygon) {
-    PatchMap& map = maps_[visit.patch];
-    auto& index = index_[visit.patch];
+  void add_piece(int f, const Corners& p, const std::vector<Piece>& polygon, Growing& growing) const {
+    PatchMap& map = growing.map;
+    auto& index = growing.index;
     std::array<std::array<double, 3>, 3> source;  // of the face's corners, in its source face
     const std::array<int, 3>& source_corners = repaired_faces_[surface_.mesh.source_face[f]];
     for (int k = 0; k < 3; ++k) source[k] = weights_in_face(surface_.source[c_.mesh.origin[3 * f + k]], source_corners);
@@ -335,7 +376,7 @@ class Extraction {
       // Along a side by clipping, or because an edge of the mesh lies on it (the surface's boundary, edges between cones).
       for (int side = 0; side < 4; ++side)
         if (side_of(polygon[i], side) == 0 && side_of(polygon[(i + 1) % n], side) == 0)
-          borders_[visit.patch].push_back({side, points[i], points[(i + 1) % n]});
+          growing.borders.push_back({side, points[i], points[(i + 1) % n]});
     }
     // Triangles, the best ears first.
     std::vector<int> left(n);
@@ -372,7 +413,7 @@ class Extraction {
     emit(left[0], left[1], left[2]);
   }
 
-  static std::array<double, 3> barycentrics(const std::array<GridPoint, 3>& p, const Vec2& uv) {
+  static std::array<double, 3> barycentrics(const Corners& p, const Vec2& uv) {
     std::array<Vec2, 3> q;
     for (int i = 0; i < 3; ++i) q[i] = Vec2(static_cast<double>(p[i].x) / kOne, static_cast<double>(p[i].y) / kOne) - uv;
     const auto c = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
@@ -383,57 +424,50 @@ class Extraction {
   }
 
   // Rounding may have put neighbouring points of a side in one place: their order is known from the pieces, and they are spread a little.
-  void finish_sides() {
+  static void finish_sides(std::size_t q, Growing& growing) {
     const std::array<Vec2, 4> square{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
-    for (std::size_t q = 0; q < maps_.size(); ++q) {
-      PatchMap& map = maps_[q];
-      for (int side = 0; side < 4; ++side) {
-        std::map<int, int> next;
-        std::map<int, char> has_previous;
-        for (const auto& b : borders_[q])
-          if (b.side == side) {
-            next[b.from] = b.to;
-            has_previous[b.to] = 1;
-          }
-        int start = -1;
-        for (const auto& [from, to] : next)
-          if (!has_previous.count(from)) {
-            if (start >= 0) throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " is not covered");
-            start = from;
-          }
-        if (start < 0) throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " is not covered");
-        std::vector<int> chain{start};
-        while (next.count(chain.back())) chain.push_back(next[chain.back()]);
-        const int axis = side % 2;
-        const double sign = side < 2 ? 1 : -1;
-        if (map.uv[chain.front()] != square[side] || map.uv[chain.back()] != square[(side + 1) % 4])
-          throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " does not end at its corners");
-        double last = map.uv[chain.front()][axis];
-        for (std::size_t k = 1; k + 1 < chain.size(); ++k) {
-          double& x = map.uv[chain[k]][axis];
-          if (sign * (x - last) < 1e-14) x = last + sign * 1e-14;
-          last = x;
+    PatchMap& map = growing.map;
+    for (int side = 0; side < 4; ++side) {
+      std::map<int, int> next;
+      std::map<int, char> has_previous;
+      for (const auto& b : growing.borders)
+        if (b.side == side) {
+          next[b.from] = b.to;
+          has_previous[b.to] = 1;
         }
-        double bound = map.uv[chain.back()][axis];
-        for (std::size_t k = chain.size() - 1; k-- > 1;) {
-          double& x = map.uv[chain[k]][axis];
-          if (sign * (bound - x) < 1e-14) x = bound - sign * 1e-14;
-          bound = x;
+      int start = -1;
+      for (const auto& [from, to] : next)
+        if (!has_previous.count(from)) {
+          if (start >= 0) throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " is not covered");
+          start = from;
         }
+      if (start < 0) throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " is not covered");
+      std::vector<int> chain{start};
+      while (next.count(chain.back())) chain.push_back(next[chain.back()]);
+      const int axis = side % 2;
+      const double sign = side < 2 ? 1 : -1;
+      if (map.uv[chain.front()] != square[side] || map.uv[chain.back()] != square[(side + 1) % 4])
+        throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " does not end at its corners");
+      double last = map.uv[chain.front()][axis];
+      for (std::size_t k = 1; k + 1 < chain.size(); ++k) {
+        double& x = map.uv[chain[k]][axis];
+        if (sign * (x - last) < 1e-14) x = last + sign * 1e-14;
+        last = x;
+      }
+      double bound = map.uv[chain.back()][axis];
+      for (std::size_t k = chain.size() - 1; k-- > 1;) {
+        double& x = map.uv[chain[k]][axis];
+        if (sign * (bound - x) < 1e-14) x = bound - sign * 1e-14;
+        bound = x;
       }
     }
   }
 
-  struct Border {
-    int side, from, to;
-  };
   ChartMesh& c_;
   const PatchedSurface& surface_;
   const std::vector<std::array<int, 3>>& repaired_faces_;
   std::vector<GridPoint> grid_;
-  std::vector<PatchMap> maps_;
-  std::vector<std::unordered_map<std::uint64_t, int>> index_;
-  std::vector<std::vector<Border>> borders_;
+  std::vector<std::vector<Part>> parts_;  // per patch, in the order in which they are met
 };
 
 }  // namespace

@@ -23,12 +23,6 @@ struct FoldedDistortion {
 
 }  // namespace
 
-double StarRelaxation::triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const {
-  const Complex a = t.alpha[0] * p0 + t.alpha[1] * p1 + t.alpha[2] * p2;
-  const Complex b = std::conj(t.alpha[0]) * p0 + std::conj(t.alpha[1]) * p1 + std::conj(t.alpha[2]) * p2;
-  return t.area * density_.value(std::norm(a), std::norm(b));
-}
-
 void StarRelaxation::gather(int v) {
   star_.clear();
   c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
@@ -42,7 +36,7 @@ double StarRelaxation::star_energy(const Complex& p) const {
   double sum = 0;
   for (const Spoke& s : star_) {
     if (!(cross(s.a - p, s.b - p) > 0)) return 1e300;
-    sum += triangle_energy(s.t, p, s.a, s.b);
+    sum += density_.of(s.t, p, s.a, s.b);
   }
   return sum;
 }
@@ -167,6 +161,32 @@ bool StarRelaxation::unfold(const std::vector<int>& vertices, int sweeps) {
     eps *= shrink;
   }
   return is_unfolded(vertices);
+}
+
+void StarRelaxation::relax_squeezed(double least, int sweeps, const Progress& progress) {
+  std::vector<int> around;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::vector<char> chosen(c_.points.size(), 0);
+    bool any = false;
+    for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f)
+      if (c_.mesh.alive[f] && c_.determinant(f) < least) {
+        any = true;
+        for (int i = 0; i < 3; ++i) chosen[c_.mesh.origin[3 * f + i]] = 1;
+      }
+    if (!any) break;
+    for (int ring = 0; ring < 3; ++ring) {
+      std::vector<char> grown = chosen;
+      for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f) {
+        if (!c_.mesh.alive[f]) continue;
+        const int* v = &c_.mesh.origin[3 * f];
+        if (chosen[v[0]] || chosen[v[1]] || chosen[v[2]]) grown[v[0]] = grown[v[1]] = grown[v[2]] = 1;
+      }
+      chosen.swap(grown);
+    }
+    for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
+      if (chosen[v] && c_.mesh.vertex_alive(v) && c_.movable(v)) relax(v, true);
+    progress((sweep + 1.0) / sweeps);
+  }
 }
 
 }  // namespace hybrid_mesh

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/context.h"
 #include "parameterization/chart_mesh.h"
 
 namespace hybrid_mesh {
@@ -13,13 +14,15 @@ class StarRelaxation {
  public:
   StarRelaxation(ChartMesh& charts, const Distortion& density) : c_(charts), density_(density) {}
 
-  double triangle_energy(const FlatTriangle& t, const Complex& p0, const Complex& p1, const Complex& p2) const;
-  double face_energy(int f) const { return triangle_energy(c_.flat(f), c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2)); }
+  double face_energy(int f) const { return density_.of(c_.flat(f), c_.at(3 * f), c_.at(3 * f + 1), c_.at(3 * f + 2)); }
 
   // One Newton step on v's position, shortened until the energy falls and no triangle folds; with `lengthen` doubled as long as that gains.
   void relax(int v, bool lengthen);
   // The same for an energy that is finite for folded triangles: their determinant D is replaced by (D + sqrt(eps^2 + D^2)) / 2.
   void relax_folded(int v, double eps);
+  // Relaxes the vertices around triangles of a determinant below `least`, until there are none or for so many sweeps: a line search over all vertices
+  // would stall on them.
+  void relax_squeezed(double least, int sweeps, const Progress& progress);
   // Every face counter-clockwise and no vertex but a cone wound around more than once.
   bool is_unfolded(const std::vector<int>& vertices) const;
   // Unfolds the stars of the given vertices by moving those of them that can move, in at most so many sweeps. Returns whether it did.

@@ -1,7 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface/edit_mesh.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+
 namespace hybrid_mesh {
+namespace {
+
+// The vertices around one, held without an allocation unless there are uncommonly many.
+class SmallRing {
+ public:
+  void add(int v) {
+    if (count_ < std::ssize(few_))
+      few_[count_++] = v;
+    else
+      more_.push_back(v);
+  }
+  bool has(int v) const {
+    return std::find(few_.begin(), few_.begin() + count_, v) != few_.begin() + count_ || std::find(more_.begin(), more_.end(), v) != more_.end();
+  }
+
+ private:
+  std::array<int, 24> few_;
+  std::ptrdiff_t count_ = 0;
+  std::vector<int> more_;
+};
+
+}  // namespace
 
 EditMesh::EditMesh(const TriangleSurface& surface) {
   const int faces = static_cast<int>(surface.faces.size());
@@ -42,16 +69,7 @@ int EditMesh::valence(int v) const {
 
 void EditMesh::ring(int v, std::vector<int>& vertices) const {
   vertices.clear();
-  int h = out[v];
-  do {
-    vertices.push_back(to(h));
-    const int g = ccw(h);
-    if (g < 0) {
-      vertices.push_back(apex(h));
-      return;
-    }
-    h = g;
-  } while (h != out[v]);
+  for_ring(v, [&](int w) { vertices.push_back(w); });
 }
 
 void EditMesh::grow(std::vector<int>& vertices, int rings) const {
@@ -104,25 +122,28 @@ bool EditMesh::can_collapse(int h) const {
   // An edge whose only face is on the other side is reached through that face's half-edge, which leaves u, not v.
   if (opposite[next(h)] < 0 && opposite[prev(h)] < 0) return false;
   if (o >= 0 && opposite[next(o)] < 0 && opposite[prev(o)] < 0) return false;
-  const auto too_thin = [&](int w) { return !is_boundary(w) && valence(w) <= 3; };
-  if (too_thin(a) || (b >= 0 && too_thin(b))) return false;
-  // A tetrahedron, or v in the middle of a face whose mirror image exists.
-  if (!v_boundary && !is_boundary(u) && valence(v) == 3 && valence(u) == 3) return false;
-  // The link condition: the only common neighbours are the apexes.
-  int g = out[v];
-  do {
-    const int w = to(g);
-    if (w != u && w != a && w != b && adjacent(u, w)) return false;
-    const int n = ccw(g);
-    if (n < 0) {
-      const int last = apex(g);
-      if (last != u && last != a && last != b && adjacent(u, last)) return false;
-      break;
+  // Inside, fewer than four edges.
+  const auto is_thin = [&](int w) {
+    int g = out[w];
+    for (int n = 0; n < 3; ++n) {
+      g = ccw(g);
+      if (g < 0) return false;
+      if (g == out[w]) return true;
     }
-    g = n;
-  } while (g != out[v]);
+    return false;
+  };
+  if (is_thin(a) || (b >= 0 && is_thin(b))) return false;
+  const bool v_thin = !v_boundary && is_thin(v);
+  // A tetrahedron, or v in the middle of a face whose mirror image exists.
+  if (v_thin && is_thin(u)) return false;
+  // The link condition: the only common neighbours are the apexes.
+  SmallRing around_u;
+  for_ring(u, [&](int w) { around_u.add(w); });
+  bool shared = false;
+  for_ring(v, [&](int w) { shared |= w != u && w != a && w != b && around_u.has(w); });
+  if (shared) return false;
   // At a valence-3 vertex the new face (u, a, b) must not exist already.
-  if (!v_boundary && valence(v) == 3) {
+  if (v_thin) {
     const int e = find(u, b);
     if (e >= 0 && apex(e) == a) return false;
   }

@@ -33,6 +33,19 @@ class EditMesh {
   int valence(int v) const;  // number of edges
   // The vertices around v, counter-clockwise; for a boundary vertex from its clockwise-most to its last neighbour.
   void ring(int v, std::vector<int>& vertices) const;
+  template <class Visit>
+  void for_ring(int v, const Visit& visit) const {
+    int h = out[v];
+    do {
+      visit(to(h));
+      const int g = ccw(h);
+      if (g < 0) {
+        visit(apex(h));
+        return;
+      }
+      h = g;
+    } while (h != out[v]);
+  }
   void grow(std::vector<int>& vertices, int rings) const;  // adds rings of neighbours
   std::vector<int> boundary_loops() const;                 // per vertex the number of its boundary loop, or -1. Operations leave it as it is
   int find(int a, int b) const;                            // the half-edge a -> b or -1 (the mesh may still hold b -> a at a boundary)

@@ -2,20 +2,32 @@
 // Based on: Garland, Heckbert, Surface simplification using quadric error metrics, 1997 (the error measure).
 #include "layout/base/decimation.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <queue>
+#include <limits>
+#include <utility>
 
 namespace hybrid_mesh {
 namespace {
 
+// The cheapest collapse that takes a vertex away; half_edge -1: there is none.
 struct Candidate {
-  double cost;
-  int vertex, half_edge;
-  std::uint32_t stamp;
-  bool operator<(const Candidate& o) const { return cost != o.cost ? cost > o.cost : vertex > o.vertex; }
+  double cost = std::numeric_limits<double>::infinity();
+  int vertex = -1, half_edge = -1;
+  std::uint32_t stamp = 0;
 };
+// The heap's order: the cheapest on top. Costs may tie, vertices do not.
+bool is_dearer(const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost > b.cost : a.vertex > b.vertex; }
+
+// When so many times the faces asked for are left, flips begin.
+constexpr double kFlipFaces = 12;
+// From so many faces on the order of collapses is kept exact, so that the base does not depend on how the queue works; before that single collapses
+// of a fine surface matter little, and exactness would take two thirds of the time.
+constexpr int kExactFaces = 120000;
 
 // A number in [0, 1) that depends on the seed and the vertex alone.
 double jitter(std::uint64_t seed, int v) {
@@ -31,6 +43,7 @@ class Decimation {
     valences_.assign(points.size(), 0);
     if (options.fixed.empty()) loop_ = mesh.boundary_loops();
     if (std::all_of(loop_.begin(), loop_.end(), [](int loop) { return loop < 0; })) loop_.clear();
+    queued_.assign(points.size(), Queued::No);
     stamps_.assign(points.size(), 0);
     for (std::size_t f = 0; f < mesh.alive.size(); ++f)
       if (mesh.alive[f]) add_face(static_cast<int>(f));
@@ -43,7 +56,7 @@ class Decimation {
 
   void run(const Progress& progress) {
     const int initial = mesh_.face_count;
-    int next_flips = static_cast<int>(0.7 * std::min<double>(initial, 12.0 * options_.target_faces));
+    int next_flips = static_cast<int>(0.7 * std::min<double>(initial, kFlipFaces * options_.target_faces));
     refill();
     int steps = 0;
     while (mesh_.face_count > options_.target_faces || loose_ > 0) {
@@ -55,10 +68,8 @@ class Decimation {
       if (++steps % 512 == 0)
         progress(std::clamp((std::log(initial) - std::log(mesh_.face_count)) / std::max(1e-9, std::log(initial) - std::log(options_.target_faces)),
                             0.0, 1.0));
-      const Candidate best = heap_.top();
-      heap_.pop();
-      if (!mesh_.vertex_alive(best.vertex) || best.stamp != stamps_[best.vertex]) continue;
-      if (mesh_.face_count <= options_.target_faces && !is_loose(best.vertex)) continue;
+      const Candidate best = pop();
+      if (best.half_edge < 0 || (mesh_.face_count <= options_.target_faces && !is_loose(best.vertex))) continue;
       collapse(best.half_edge);
       if (mesh_.face_count <= next_flips) {
         flips();
@@ -102,31 +113,73 @@ class Decimation {
     }
   }
 
-  // Cost of moving from(h) onto to(h); infinite where the topology forbids it.
-  double cost(int h) {
-    const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
-    const Vec3& target = points_[u];
-    double longest = 0, worst_shape = 1, worst_turn = 1;
+  // What the costs of all collapses that take one vertex away have in common.
+  struct Star {
+    struct Spoke {
+      Vec3 at;
+      int half_edge;  // from the vertex, -1 for the last one at a boundary
+      int end;
+    };
+    struct Face {
+      Vec3 normal;  // the area's double long
+      double area2 = 0;
+    };
+    std::vector<Spoke> spokes;  // counter-clockwise
+    std::vector<Face> faces;    // face i between spokes i and i + 1
+    std::vector<std::pair<double, int>> bounds;
+    std::vector<int> around;
+  };
+
+  void gather(int v, Star& star) const {
+    star.spokes.clear(), star.faces.clear();
     int g = mesh_.out[v];
     do {
-      const int a = mesh_.to(g), b = mesh_.apex(g);
-      if (a != u && b != u) {
-        const Vec3 ab = points_[b] - points_[a], au = target - points_[a], bu = target - points_[b];
-        const Vec3 fresh = au.cross(bu), before = (points_[v] - points_[a]).cross(points_[v] - points_[b]);
-        const double la = au.squaredNorm(), lb = bu.squaredNorm(), area2 = fresh.norm();
-        longest = std::max({longest, la, lb});
-        const double sum = ab.squaredNorm() + la + lb;
-        worst_shape = std::min(worst_shape, sum > 0 ? 2 * std::sqrt(3.0) * area2 / sum : 0.0);
-        const double scale = area2 * before.norm();
-        if (scale > 0) worst_turn = std::min(worst_turn, fresh.dot(before) / scale);
-      }
+      star.spokes.push_back({points_[mesh_.to(g)], g, mesh_.to(g)});
       const int n = mesh_.ccw(g);
-      if (n < 0) break;
+      if (n < 0) star.spokes.push_back({points_[mesh_.apex(g)], -1, mesh_.apex(g)});
       g = n;
-    } while (g != mesh_.out[v]);
-    const double area = quadrics_[v].area + quadrics_[u].area;
-    double error = (quadrics_[v].planes(target) + quadrics_[u].planes(target)) / std::max(area, 1e-300);
-    error += options_.evenness * longest;
+    } while (g >= 0 && g != mesh_.out[v]);
+    const std::size_t count = star.spokes.back().half_edge < 0 ? star.spokes.size() - 1 : star.spokes.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 normal = (points_[v] - star.spokes[i].at).cross(points_[v] - star.spokes[(i + 1) % star.spokes.size()].at);
+      star.faces.push_back({normal, normal.norm()});
+    }
+  }
+
+  // Calls visit(face, first spoke, second spoke) for the faces of the star that moving its vertex along a spoke keeps.
+  template <class Visit>
+  static void for_kept_faces(const Star& star, std::size_t spoke, const Visit& visit) {
+    for (std::size_t i = 0; i < star.faces.size(); ++i) {
+      const std::size_t j = i + 1 == star.spokes.size() ? 0 : i + 1;
+      if (i != spoke && j != spoke) visit(star.faces[i], star.spokes[i].at, star.spokes[j].at);
+    }
+  }
+
+  // The part of a collapse's cost that the rest only multiplies, by no less than 1: the distance to the surface and the longest edge.
+  double least_cost(int v, const Star& star, std::size_t spoke) const {
+    const Vec3& target = star.spokes[spoke].at;
+    double longest = 0;
+    for_kept_faces(star, spoke, [&](const Star::Face&, const Vec3& a, const Vec3& b) {
+      longest = std::max({longest, (target - a).squaredNorm(), (target - b).squaredNorm()});
+    });
+    const VertexQuadric &mine = quadrics_[v], &other = quadrics_[star.spokes[spoke].end];
+    return (mine.planes(target) + other.planes(target)) / std::max(mine.area + other.area, 1e-300) + options_.evenness * longest;
+  }
+
+  // Times the shape of the new triangles, how far they turn, and valences.
+  double full_cost(double error, int v, const Star& star, std::size_t spoke) const {
+    const int h = star.spokes[spoke].half_edge, u = star.spokes[spoke].end, o = mesh_.opposite[h];
+    const Vec3& target = star.spokes[spoke].at;
+    double worst_shape = 1, worst_turn = 1;
+    for_kept_faces(star, spoke, [&](const Star::Face& face, const Vec3& a, const Vec3& b) {
+      const Vec3 ab = b - a, au = target - a, bu = target - b;
+      const Vec3 fresh = au.cross(bu);
+      const double area2 = fresh.norm();
+      const double sum = ab.squaredNorm() + au.squaredNorm() + bu.squaredNorm();
+      worst_shape = std::min(worst_shape, sum > 0 ? 2 * std::sqrt(3.0) * area2 / sum : 0.0);
+      const double scale = area2 * face.area2;
+      if (scale > 0) worst_turn = std::min(worst_turn, fresh.dot(face.normal) / scale);
+    });
     error *= 1 + 0.3 * (1 / std::max(worst_shape, 0.01) - 1);
     error *= 1 + 20 * std::max(0.0, 0.3 - worst_turn);
     const auto misfit = [&](int w, int valence) {
@@ -141,48 +194,97 @@ class Decimation {
     return error * (1 + 1e-3 * jitter(options_.seed, v));
   }
 
+  // The cheapest collapse of v that the topology allows.
+  Candidate cheapest(int v, Star& star) const {
+    Candidate best;
+    best.vertex = v;
+    if (!options_.fixed.empty() && options_.fixed[v]) return best;
+    gather(v, star);
+    // A boundary vertex moves along its outgoing boundary edge.
+    const std::size_t ways = mesh_.is_boundary(v) ? 1 : star.spokes.size();
+    star.bounds.clear();
+    for (std::size_t i = 0; i < ways; ++i) star.bounds.push_back({least_cost(v, star, i), static_cast<int>(i)});
+    std::sort(star.bounds.begin(), star.bounds.end());
+    for (const auto& [bound, i] : star.bounds) {
+      if (bound > best.cost) break;
+      const int h = star.spokes[i].half_edge;
+      const double cost = full_cost(bound, v, star, i);
+      // The topological test is dearer than the cost.
+      if (!(cost < best.cost || (cost == best.cost && h < best.half_edge)) || !mesh_.can_collapse(h) || makes_chord(h, star.around)) continue;
+      best.cost = cost;
+      best.half_edge = h;
+    }
+    return best;
+  }
+
   // On a boundary that is to be left with the fixed vertices only.
   bool is_loose(int v) const { return !options_.fixed.empty() && !options_.fixed[v] && mesh_.is_boundary(v); }
 
   // Would an inner edge join two vertices of one boundary loop? A map of the surface at this stage could give a triangle between it and the boundary
   // no area, where a straight side of the base runs along it. What only decides on the base, from the first flips on, may have such edges.
-  bool makes_chord(int h) {
+  bool makes_chord(int h, std::vector<int>& around) const {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
     if (loop_.empty() || flipped_ || loop_[u] < 0 || loop_[v] >= 0) return false;
-    mesh_.ring(v, around_);
-    return std::any_of(around_.begin(), around_.end(),
+    mesh_.ring(v, around);
+    return std::any_of(around.begin(), around.end(),
                        [&](int w) { return loop_[w] == loop_[u] && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
   }
 
-  void push(int v) {
-    ++stamps_[v];
-    if (!options_.fixed.empty() && options_.fixed[v]) return;
-    scratch_.clear();
-    int g = mesh_.out[v];
-    do {
-      scratch_.push_back({cost(g), v, g, stamps_[v]});
-      const int n = mesh_.ccw(g);
-      if (n < 0 || mesh_.is_boundary(v)) break;  // a boundary vertex moves along its outgoing boundary edge
-      g = n;
-    } while (g != mesh_.out[v]);
-    // The cheapest allowed one; the topological test is dearer than the cost of most.
-    std::sort(scratch_.begin(), scratch_.end(),
-              [](const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost < b.cost : a.half_edge < b.half_edge; });
-    for (const Candidate& c : scratch_)
-      if (mesh_.can_collapse(c.half_edge) && !makes_chord(c.half_edge)) {
-        heap_.push(c);
-        return;
-      }
+  // What changes around a vertex makes its cost in the heap a stale one, which is found out only when it comes to the top: of the seven vertices
+  // around a collapse most change again before that, and costs seldom fall. Where the base takes shape costs are kept exact.
+  enum class Queued : char { No, Fresh, Stale };
+  bool keeps_exact() const { return mesh_.face_count <= kExactFaces; }
+
+  void push(Candidate candidate) {
+    const int v = candidate.vertex;
+    candidate.stamp = ++stamps_[v];
+    queued_[v] = candidate.half_edge < 0 ? Queued::No : Queued::Fresh;
+    if (candidate.half_edge < 0) return;
+    heap_.push_back(candidate);
+    std::push_heap(heap_.begin(), heap_.end(), is_dearer);
+  }
+
+  // The cheapest collapse, or none if another one has to be looked at first.
+  Candidate pop() {
+    std::pop_heap(heap_.begin(), heap_.end(), is_dearer);
+    Candidate top = heap_.back();
+    heap_.pop_back();
+    if (!mesh_.vertex_alive(top.vertex) || top.stamp != stamps_[top.vertex]) return {};
+    if (std::exchange(queued_[top.vertex], Queued::No) == Queued::Fresh) return top;
+    top = cheapest(top.vertex, star_);
+    if (top.half_edge < 0 || heap_.empty() || !is_dearer(top, heap_.front())) return top;
+    push(top);
+    return {};
   }
 
   void refill() {
-    heap_ = {};
-    for (std::size_t v = 0; v < points_.size(); ++v)
-      if (mesh_.vertex_alive(static_cast<int>(v))) push(static_cast<int>(v));
+    std::vector<int> vertices;
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+      queued_[v] = Queued::No;
+      if (mesh_.vertex_alive(static_cast<int>(v))) vertices.push_back(static_cast<int>(v));
+    }
+    heap_.resize(vertices.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
+      Star star;
+      for (std::size_t i = range.begin(); i < range.end(); ++i) heap_[i] = cheapest(vertices[i], star);
+    });
+    std::erase_if(heap_, [](const Candidate& c) { return c.half_edge < 0; });
+    for (Candidate& c : heap_) {
+      queued_[c.vertex] = Queued::Fresh;
+      c.stamp = stamps_[c.vertex];
+    }
+    std::make_heap(heap_.begin(), heap_.end(), is_dearer);
+  }
+
+  void touch(int v) {
+    if (queued_[v] == Queued::No || keeps_exact())
+      push(cheapest(v, star_));
+    else
+      queued_[v] = Queued::Stale;
   }
 
   void collapse(int h) {
-    if (!mesh_.can_collapse(h) || makes_chord(h)) return;
+    if (!mesh_.can_collapse(h) || makes_chord(h, star_.around)) return;
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
     valences_[u] += valences_[v] - (mesh_.is_boundary(v) ? 3 : 4);
     --valences_[mesh_.apex(h)];
@@ -193,8 +295,8 @@ class Decimation {
     mesh_.collapse(h);
     log_.push_back({MeshEdit::Kind::Collapse, h});
     mesh_.ring(u, ring_);
-    push(u);
-    for (const int w : ring_) push(w);
+    touch(u);
+    for (const int w : ring_) touch(w);
   }
 
   double flip_gain(int h) {
@@ -221,10 +323,13 @@ class Decimation {
 
   void flips() {
     flipped_ = true;
+    std::vector<int> halves;
+    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h)
+      if (mesh_.alive[h / 3]) halves.push_back(h);
     for (int sweep = 0; sweep < 3; ++sweep) {
       int count = 0;
-      for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
-        if (!mesh_.alive[h / 3] || mesh_.opposite[h] < h) continue;
+      for (const int h : halves) {
+        if (mesh_.opposite[h] < h) continue;
         if (flip_gain(h) <= 0.05 || !mesh_.can_flip(h)) continue;
         --valences_[mesh_.from(h)], --valences_[mesh_.to(h)];
         ++valences_[mesh_.apex(h)], ++valences_[mesh_.apex(mesh_.opposite[h])];
@@ -242,10 +347,11 @@ class Decimation {
   std::vector<MeshEdit>& log_;
   std::vector<VertexQuadric> quadrics_;
   std::vector<int> valences_;
-  std::vector<std::uint32_t> stamps_;
-  std::priority_queue<Candidate> heap_;
-  std::vector<Candidate> scratch_;
-  std::vector<int> ring_, around_;
+  std::vector<Queued> queued_;
+  std::vector<std::uint32_t> stamps_;  // of the last candidate, by vertex: earlier ones in the heap count for nothing
+  std::vector<Candidate> heap_;
+  Star star_;
+  std::vector<int> ring_;
   std::vector<int> loop_;  // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
   bool flipped_ = false;
   int loose_ = 0;

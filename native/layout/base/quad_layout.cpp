@@ -26,10 +26,10 @@ class QuadCoarsening {
       : mesh_(mesh), points_(points), quadrics_(std::move(quadrics)), options_(options), log_(log) {}
 
   QuadLayout run(const Progress& progress) {
+    list_live();
     pair();
     double area = 0;
-    for (std::size_t v = 0; v < points_.size(); ++v)
-      if (mesh_.vertex_alive(static_cast<int>(v))) area += quadrics_[v].area;
+    for (const int v : vertices_) area += quadrics_[v].area;
     side_ = std::sqrt(area / std::max(1.0, options_.size));
     clean();
     int rounds = 0;
@@ -37,7 +37,7 @@ class QuadCoarsening {
       progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
       // Few quads may clean each other away.
       const bool last_ones = quad_count() < 2 * options_.least + 8;
-      const State before = last_ones ? State{log_.size(), mate_, split_, quadrics_} : State{};
+      const State before = last_ones ? state() : State{};
       if (!collapse_cheapest()) break;
       clean();
       if (!last_ones || quad_count() >= options_.least) continue;
@@ -52,9 +52,16 @@ class QuadCoarsening {
  private:
   struct State {
     std::size_t log = 0;
-    std::vector<int> mate, split;
-    std::vector<VertexQuadric> quadrics;
+    std::vector<int> faces, mate, split;  // of the live faces
+    std::vector<int> vertices;
+    std::vector<VertexQuadric> quadrics;  // of the live vertices
   };
+  State state() const {
+    State s{log_.size(), faces_, {}, {}, vertices_, {}};
+    for (const int f : faces_) s.mate.push_back(mate_[f]), s.split.push_back(split_[f]);
+    for (const int v : vertices_) s.quadrics.push_back(quadrics_[v]);
+    return s;
+  }
   void restore(const State& state) {
     for (; log_.size() > state.log; log_.pop_back()) {
       if (log_.back().kind == MeshEdit::Kind::Collapse)
@@ -62,9 +69,23 @@ class QuadCoarsening {
       else
         mesh_.undo_flip(log_.back().half_edge);
     }
-    mate_ = state.mate;
-    split_ = state.split;
-    quadrics_ = state.quadrics;
+    faces_ = state.faces;
+    vertices_ = state.vertices;
+    for (std::size_t i = 0; i < faces_.size(); ++i) mate_[faces_[i]] = state.mate[i], split_[faces_[i]] = state.split[i];
+    for (std::size_t i = 0; i < vertices_.size(); ++i) quadrics_[vertices_[i]] = state.quadrics[i];
+  }
+
+  // The mesh is that of the whole surface, and hardly any of it is alive: sweeps go over lists. They hold all that is alive, in order; drop_dead()
+  // follows every collapse.
+  void list_live() {
+    for (int f = 0; f < static_cast<int>(mesh_.alive.size()); ++f)
+      if (mesh_.alive[f]) faces_.push_back(f);
+    for (int v = 0; v < static_cast<int>(points_.size()); ++v)
+      if (mesh_.vertex_alive(v)) vertices_.push_back(v);
+  }
+  void drop_dead() {
+    std::erase_if(faces_, [&](int f) { return !mesh_.alive[f]; });
+    std::erase_if(vertices_, [&](int v) { return !mesh_.vertex_alive(v); });
   }
 
   // --- quads as pairs of triangles -------------------------------------------------------------------------------------------
@@ -83,15 +104,13 @@ class QuadCoarsening {
   }
   int quad_count() const {
     int faces = 0;
-    for (std::size_t f = 0; f < mate_.size(); ++f)
-      if (mesh_.alive[f]) faces += is_pair(static_cast<int>(f)) ? 1 : 2;
+    for (const int f : faces_) faces += is_pair(f) ? 1 : 2;
     return faces / 2;
   }
   double size() const {
     int sides = 0;
-    for (std::size_t f = 0; f < mate_.size(); ++f)
-      if (mesh_.alive[f])
-        for (std::size_t h = 3 * f; h < 3 * f + 3; ++h) sides += mesh_.opposite[h] < 0 ? (split_[f] == static_cast<int>(h) ? 2 : 1) : 0;
+    for (const int f : faces_)
+      for (int h = 3 * f; h < 3 * f + 3; ++h) sides += mesh_.opposite[h] < 0 ? (split_[f] == h ? 2 : 1) : 0;
     return quad_count() + options_.boundary_side * sides;
   }
   // Number of quads around a vertex less the regular number (4 inside, 2 at the boundary).
@@ -126,15 +145,11 @@ class QuadCoarsening {
   }
 
   void pair() {
-    std::vector<int> faces, index(mesh_.alive.size(), -1);
-    for (std::size_t f = 0; f < mesh_.alive.size(); ++f)
-      if (mesh_.alive[f]) {
-        index[f] = static_cast<int>(faces.size());
-        faces.push_back(static_cast<int>(f));
-      }
+    std::vector<int> index(mesh_.alive.size(), -1);
+    for (std::size_t i = 0; i < faces_.size(); ++i) index[faces_[i]] = static_cast<int>(i);
     std::vector<PairCandidate> candidates;
     std::vector<int> halves;
-    for (const int f : faces)
+    for (const int f : faces_)
       for (int h = 3 * f; h < 3 * f + 3; ++h) {
         const int o = mesh_.opposite[h];
         if (o >= 0 && o < h) continue;
@@ -147,17 +162,17 @@ class QuadCoarsening {
         }
         halves.push_back(h);
       }
-    const std::vector<int> choice = pair_triangles(static_cast<int>(faces.size()), candidates);
+    const std::vector<int> choice = pair_triangles(static_cast<int>(faces_.size()), candidates);
     mate_.assign(mesh_.alive.size(), -1);
     split_.assign(mesh_.alive.size(), -1);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
       const PairCandidate& c = candidates[choice[i]];
-      const int f = faces[i];
+      const int f = faces_[i];
       if (c.b < 0) {
         mate_[f] = f;
         split_[f] = halves[choice[i]];
       } else {
-        mate_[f] = faces[c.a] == f ? faces[c.b] : faces[c.a];
+        mate_[f] = faces_[c.a] == f ? faces_[c.b] : faces_[c.a];
       }
     }
   }
@@ -301,9 +316,8 @@ class QuadCoarsening {
 
   bool collapse_cheapest() {
     std::vector<DiagonalCollapse> all;
-    for (std::size_t i = 0; i < mate_.size(); ++i) {
-      const int f = static_cast<int>(i);
-      if (!mesh_.alive[i] || !is_pair(f) || mate_[f] < f) continue;
+    for (const int f : faces_) {
+      if (!is_pair(f) || mate_[f] < f) continue;
       const int d = diagonal(f);
       const int x = mesh_.from(d), y = mesh_.to(d), p = mesh_.apex(d), q = mesh_.apex(mesh_.opposite[d]);
       all.push_back({diagonal_cost(x, y, p, q), x, y, f});
@@ -320,6 +334,7 @@ class QuadCoarsening {
       const int h = mesh_.find(c.from, c.to);
       if (h < 0 || !mesh_.can_collapse(h)) continue;
       collapse(h);
+      drop_dead();
       return true;
     }
     return false;
@@ -329,13 +344,15 @@ class QuadCoarsening {
   void clean() {
     for (int sweep = 0; sweep < 50; ++sweep) {
       bool changed = false;
-      for (std::size_t v = 0; v < points_.size(); ++v)
-        if (mesh_.vertex_alive(static_cast<int>(v)) && remove_doublet(static_cast<int>(v))) changed = true;
-      for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
-        if (!mesh_.alive[h / 3] || mesh_.opposite[h] < h) continue;
-        const Rotation r = best_rotation(h);
-        if (r.half_edge >= 0 && r.gain > 0.05 && rotate(r)) changed = true;
-      }
+      for (const int v : vertices_)
+        if (mesh_.vertex_alive(v) && remove_doublet(v)) changed = true;
+      drop_dead();
+      for (const int f : faces_)
+        for (int h = 3 * f; h < 3 * f + 3; ++h) {
+          if (mesh_.opposite[h] < h) continue;
+          const Rotation r = best_rotation(h);
+          if (r.half_edge >= 0 && r.gain > 0.05 && rotate(r)) changed = true;
+        }
       if (!changed) return;
     }
   }
@@ -344,11 +361,10 @@ class QuadCoarsening {
   QuadLayout layout() const {
     QuadLayout out;
     std::vector<int> node(points_.size(), -1);
-    for (std::size_t v = 0; v < points_.size(); ++v)
-      if (mesh_.vertex_alive(static_cast<int>(v))) {
-        node[v] = static_cast<int>(out.node_vertex.size());
-        out.node_vertex.push_back(static_cast<int>(v));
-      }
+    for (const int v : vertices_) {
+      node[v] = static_cast<int>(out.node_vertex.size());
+      out.node_vertex.push_back(v);
+    }
     std::map<int, int> curve_of_edge;
     const auto side = [&](int h) {
       QuadLayout::Side s;
@@ -359,9 +375,8 @@ class QuadCoarsening {
       s.forward = out.curves[s.curve].start == mesh_.from(h);
       return s;
     };
-    for (std::size_t i = 0; i < mate_.size(); ++i) {
-      const int f = static_cast<int>(i);
-      if (!mesh_.alive[i] || mate_[f] < f) continue;
+    for (const int f : faces_) {
+      if (mate_[f] < f) continue;
       QuadLayout::Quad quad;
       if (is_pair(f)) {
         const int d = diagonal(f), o = mesh_.opposite[d];
@@ -387,8 +402,9 @@ class QuadCoarsening {
   std::vector<VertexQuadric> quadrics_;
   const QuadLayoutOptions& options_;
   std::vector<MeshEdit>& log_;
-  std::vector<int> mate_;   // per face: the other triangle of its quad, or itself
-  std::vector<int> split_;  // per face that is its own mate: the boundary half-edge that holds the fourth node
+  std::vector<int> faces_, vertices_;  // that are alive, see list_live()
+  std::vector<int> mate_;              // per face: the other triangle of its quad, or itself
+  std::vector<int> split_;             // per face that is its own mate: the boundary half-edge that holds the fourth node
   double side_ = 1;
 };
 
