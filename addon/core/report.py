@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reports: the JSON beside every remesh, the summary of a batch, and the figures that a panel shows."""
 
+import copy
 import csv
 import hashlib
 import io
@@ -46,7 +47,7 @@ def irregular_count(final):
 def quality(report):
     """The figures that people judge a remesh by, from a report; missing ones are None."""
     final = report.get("final", {})
-    jacobian = final.get("scaled_jacobian", {})
+    jacobian = final.get("scaled_jacobian") or {}
     return {
         "vertices": final.get("vertices"),
         "quads": final.get("quads"),
@@ -61,6 +62,38 @@ def quality(report):
         "scaled_jacobian_p50": jacobian.get("p50"),
         "inverted": jacobian.get("inverted"),
     }
+
+
+def repatched(report, operation, outcome, most_vertices=0):
+    """The report of a hierarchy after one more operation, of which only that part was measured.
+
+    operation: {kind, level, quads, new_quads}; outcome: of the native repatch(); most_vertices: the bound that the remesh was given.
+    Distances and shapes of what has changed are None: they were not measured again.
+    """
+    made = copy.deepcopy(report)
+    first = operation["level"]
+    for level in made.get("levels", []):
+        number = level.get("level", -1)
+        if number < first:
+            continue
+        level.update(outcome["levels"].get(number, {}))
+        level.update(l2=None, hausdorff=None, stretch=None, irregular_vertices=None)
+        if number == first:
+            level.setdefault("irregular_ops", []).append(
+                {"kind": operation["kind"], "removed_quads": len(operation["quads"]), "new_quads": len(operation["new_quads"])}
+            )
+    final = made.get("final", {})
+    measured = ("l2", "hausdorff", "boundary_hausdorff", "regular_fraction", "irregular_vertices", "scaled_jacobian")
+    final.update(dict.fromkeys(measured))
+    finest = outcome["levels"][max(outcome["levels"])]
+    final.update(finest)
+    made["warnings"] = []
+    before, after = outcome["energy_before"], outcome["energy_after"]
+    if not after < before:
+        made["warnings"].append(f"the new quads are no better than those that they replace: their distortion, with the rings around, was {before:.3g} and is {after:.3g}")
+    if most_vertices and finest["vertices"] > most_vertices:
+        made["warnings"].append(f"there are {finest['vertices']:,} vertices now, more than the bound of {most_vertices:,}")
+    return made
 
 
 def summary_row(name, source, status, report=None, error=""):
@@ -93,7 +126,7 @@ def level_table(report):
     for level in report.get("levels", []):
         lines.append(
             f"{_level_name(level):<8}{level.get('vertices', 0):>10,}{level.get('quads', 0):>10,}"
-            f"{irregular_count(level):>11,}{_scientific(level.get('l2')):>12}{_scientific(level.get('hausdorff')):>12}"
+            f"{_whole(irregular_count(level)):>11}{_scientific(level.get('l2')):>12}{_scientific(level.get('hausdorff')):>12}"
         )
     return lines
 
@@ -119,6 +152,10 @@ def peak_memory_bytes():
 def _level_name(level):
     name = level.get("level", "")
     return name if isinstance(name, str) else f"N{name}"
+
+
+def _whole(value):
+    return "" if value is None else f"{value:,}"
 
 
 def _scientific(value):

@@ -17,24 +17,27 @@ namespace py = pybind11;
 namespace hybrid_mesh {
 namespace {
 
-struct Outcome {
-  int operation = -1;
-  double energy_before = 0, energy_after = 0;
-};
-
-Outcome repatch(PythonHierarchy hierarchy, const Plan::Region& region, Context& context) {
+RegionUpdate repatch(PythonHierarchy hierarchy, const Plan::Region& region, Context& context) {
   const auto [mesh, plan_root] = hierarchy.snapshot();
   RegionUpdate update = repatch_hierarchy(*mesh, root_numbers(*mesh, plan_root), region, Progress(context));
   if (!hierarchy.replace(mesh, std::make_shared<const HybridMesh>(std::move(update.hierarchy)), std::move(update.root_numbers)))
     throw Error(ErrorCode::InvalidInput, "the hierarchy was changed while a region of it was laid out anew: nothing was done");
-  return {update.operation, update.energy_before, update.energy_after};
+  return update;
 }
 
-py::dict to_dict(const Outcome& outcome) {
+py::dict to_dict(const RegionUpdate& outcome) {
   py::dict result;
   result["operation"] = outcome.operation;
   result["energy_before"] = outcome.energy_before;
   result["energy_after"] = outcome.energy_after;
+  py::dict levels;
+  for (const RegionUpdate::Level& of : outcome.levels) {
+    py::dict counts;
+    counts["vertices"] = of.vertices;
+    counts["quads"] = of.faces;
+    levels[py::int_(of.level)] = counts;
+  }
+  result["levels"] = levels;
   return result;
 }
 
@@ -47,7 +50,8 @@ Plan::Region region_from_python(const py::object& operation) {
 constexpr const char* kRepatch = R"(Lays out quads of one level anew, and rebuilds what lies above them: at their cost alone.
 
 operation is one of a plan's "operations", a dict or JSON text: the level, the addresses of the quads, curves or a layout ("automatic", "cubes", "template"), buffer_rings. No finer level
-may have operations, and none of the quads may have been put in by another operation of the level. Returns a dict: operation, its number; energy_before and energy_after, of the maps of
+may have operations, and none of the quads may have been put in by another operation of the level. Returns a dict: operation, its number; levels, the vertices and quads of that
+level and all finer ones; energy_before and energy_after, of the maps of
 the region and of the rings around it beyond an isometry's, in quads of mean size: the region is better only where that has fallen. Raises InvalidInput, LayoutError or Unsupported with the
 reason if it cannot be done, and then nothing has changed.)";
 
@@ -57,6 +61,13 @@ void bind_region_update(py::module_& module) {
   using py::arg;
   auto type = py::reinterpret_borrow<py::class_<PythonHierarchy>>(module.attr("Hierarchy"));
   type.def(
+          "copy",
+          [](const PythonHierarchy& hierarchy) {
+            auto [mesh, plan_root] = hierarchy.snapshot();
+            return PythonHierarchy(std::move(mesh), hierarchy.metadata(), std::move(plan_root));
+          },
+          "A hierarchy of its own, which starts as this one is. Maps are shared.")
+      .def(
           "repatch",
           [](PythonHierarchy& hierarchy, const py::object& operation) {
             const Plan::Region region = region_from_python(operation);
@@ -66,7 +77,7 @@ void bind_region_update(py::module_& module) {
       .def(
           "start_repatch",
           [](const PythonHierarchy& hierarchy, const py::object& operation) {
-            auto outcome = std::make_shared<Outcome>();  // written by the job's thread until it is done
+            auto outcome = std::make_shared<RegionUpdate>();  // written by the job's thread until it is done
             return start_job(
                 [hierarchy, region = region_from_python(operation), outcome](Context& context) { *outcome = repatch(hierarchy, region, context); },
                 [outcome]() -> py::object { return to_dict(*outcome); });

@@ -135,11 +135,13 @@ RegionUpdate repatch_hierarchy(const HybridMesh& hierarchy, const std::vector<in
   // Fits are independent: each reads the hierarchy and moves its own level.
   const int levels = h.depth() - region.level + 1;
   std::vector<QuadMesh> parts(levels + 1);
+  out.levels.resize(levels);
   tbb::parallel_for(0, levels + 1, [&](int k) {
     const bool last = k == levels;
     const int level = last ? h.depth() : region.level + k;
-    parts[k] =
-        fitted_part(h, last ? h.final_mesh() : h.level_mesh(level), mapped, level_fit(level == h.depth(), level), placement, progress.part(0.6, 0.6));
+    const QuadMesh mesh = last ? h.final_mesh() : h.level_mesh(level);
+    if (!last) out.levels[k] = {level, static_cast<std::int64_t>(mesh.points.size()), static_cast<std::int64_t>(mesh.face_count())};
+    parts[k] = fitted_part(h, mesh, mapped, level_fit(level == h.depth(), level), placement, progress.part(0.6, 0.6));
   });
   for (int k = 0; k < levels; ++k) h.set_level_positions(region.level + k, parts[k]);
   h.set_final_positions(parts[levels]);

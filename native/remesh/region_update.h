@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "hierarchy/hybrid_mesh.h"
@@ -16,6 +17,12 @@ struct RegionUpdate {
   // Of the maps of the region's quads and of those smoothed around it: energy beyond an isometry's, in quads of mean size. Where it has not fallen
   // the region is no better than it was.
   double energy_before = 0, energy_after = 0;
+  // Of the operation's level and all finer ones.
+  struct Level {
+    int level = 0;
+    std::int64_t vertices = 0, faces = 0;
+  };
+  std::vector<Level> levels;
 };
 
 // Lays out quads of one level of a finished hierarchy anew, as a plan's region says, and rebuilds what lies above them: only they and the rings

@@ -150,3 +150,11 @@ def test_a_base_on_a_boundary():
             plans.boundary_plan(wrong)
     with pytest.raises(plans.PlanError, match="cubes"):
         plans.boundary_plan(nodes, -1)
+
+
+def test_plans_are_broken_into_lines_and_stay_what_they_are():
+    plan = json.dumps({"base": {"nodes": [[1, 2, 3]] * 1000, "quads": [[0, 1, 2, 3]]}, "levels": [{"operations": [{"kind": "repatch"}, {}]}]})
+    text = plans.in_lines(plan)
+    assert json.loads(text) == json.loads(plan)
+    assert max(map(len, text.splitlines())) < 100
+    assert plans.in_lines(text) == text

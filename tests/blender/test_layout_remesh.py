@@ -190,10 +190,37 @@ def test_a_region_that_costs_a_level_says_so(world, capfd, vertices, fewer):
     _, levels, _ = from_layout(world, world.scan(), vertices)
     levels[1].hide_set(False)
     select_faces(world, levels[1], {0})
+    module("features.levels.kept").forget()  # as in a file that was opened: the source is remeshed
     assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
     made = [obj for obj in bpy.context.object.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.level.startswith("N")]
     assert len(made) == len(levels) - fewer
     assert ("the bound of 1,600 vertices leaves one level less" in capfd.readouterr().out) == fewer
+
+
+@pytest.mark.parametrize("vertices, more", [(1600, True), (2000, False)])
+def test_a_region_of_the_hierarchy_at_hand_keeps_all_that_is_farther_off(world, capfd, vertices, more):
+    _, levels, _ = from_layout(world, world.scan(), vertices)
+    levels[1].hide_set(False)
+    select_faces(world, levels[1], {0})
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    made = [level_of(bpy.context.object, level.hybrid_mesh.level) for level in levels]
+    assert ("more than the bound of 1,600" in capfd.readouterr().out) == more
+    for old, new in zip(levels, made, strict=True):
+        points = {tuple(vertex.co) for vertex in new.data.vertices}
+        kept = sum(tuple(vertex.co) in points for vertex in old.data.vertices) / len(old.data.vertices)
+        assert kept == 1 if old.hybrid_mesh.level == "N0" else kept > 0.3
+    report = module("features.levels.properties").report_of(bpy.context.object.hybrid_mesh.hierarchy)
+    assert report["final"]["vertices"] == len(made[-1].data.vertices) and report["final"]["l2"] is None
+    # One more, in the hierarchy that has come of it; then what undo brings back is at hand as it was.
+    first = bpy.context.object.hybrid_mesh.hierarchy
+    finer = made[2]
+    finer.hide_set(False)
+    irregular = module("bridge.meshes").get_attribute(finer.data, "irregular")
+    select_faces(world, finer, {next(face for face, new in enumerate(irregular) if not new)})
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    assert len(operations(bpy.context.object)) == 2
+    kept = module("features.levels.kept")
+    assert kept.find(first).hierarchy.operation_count == 1 and kept.find(levels[0].hybrid_mesh.hierarchy).hierarchy.operation_count == 0
 
 
 def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
@@ -212,6 +239,7 @@ def test_what_is_no_region(world, region):
     refused(bpy.ops.hybrid_mesh.repatch_region, "no faces are selected")
     mesh.polygons[0].select = True
     plan = plan_of(region.scan)
+    module("features.levels.kept").forget()  # else nothing is read of the plan
     hierarchy.hybrid_mesh.plan.clear()
     hierarchy.hybrid_mesh.plan.write("{}")
     refused(bpy.ops.hybrid_mesh.repatch_region, "plan")

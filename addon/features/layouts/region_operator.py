@@ -11,7 +11,7 @@ from ...core import settings as core
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task
 from ..remesh.properties import core_settings
-from . import drawing, problems, properties, region_quads, view
+from . import drawing, problems, properties, region_quads, region_update, view
 
 _sources = []  # Blender keeps no reference to the texts of items that a function returns.
 
@@ -30,7 +30,7 @@ def _source_items(operator, context):
 
 
 class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperator):
-    """Lay out the selected faces of a level anew, along curves drawn over them or by a rule: the source is remeshed with one more operation"""
+    """Lay out the selected faces of a level anew, along curves drawn over them or by a rule. All that is farther off stays as it is"""
 
     bl_idname = "hybrid_mesh.repatch_region"
     bl_label = "Repatch Region"
@@ -40,6 +40,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     _level = _hierarchy = None  # objects.key_of() them
     _drawn = None  # drawing.Drawn, if curves were drawn
+    _update = None  # region_update.Update, where the hierarchy is at hand
 
     @classmethod
     def poll(cls, context):
@@ -66,6 +67,9 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
         addresses = region_quads.selected_quads(level, hierarchy)
         operation = plans.repatch_operation(region_quads.level_number(level), addresses, self._new_layout(context, level, hierarchy), self.buffer_rings)
         self._level, self._hierarchy = objects.key_of(level), objects.key_of(hierarchy)
+        self._update = region_update.prepare(hierarchy, operation, plan)
+        if self._update is not None:
+            return [self._update.task(source.name)]
         with objects.evaluated(context, source) as graph:
             return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
 
@@ -84,6 +88,9 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     def finish(self, context, results):
         view.to_object_mode(context)
+        if self._update is not None:
+            ((task, outcome),) = results
+            results = [(task, self._update.result(outcome))]
         super().finish(context, results)
         level = objects.find(context.scene, self._level)
         if level is not None:

@@ -8,6 +8,7 @@ import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
 from ...bridge.names import with_suffix
+from ...core import plans
 from ...core import report as reports
 
 ROLES = (
@@ -28,6 +29,7 @@ class HybridMeshCollection(bpy.types.PropertyGroup):
     preview: PointerProperty(name="Preview", type=bpy.types.Object, description="The object that shows one level at a time")
     report: StringProperty(name="Report", description="What was measured, as JSON")
     operations: StringProperty(name="Operations", description="The irregular operations, as JSON: where they are and what quads they put there")
+    token: StringProperty(name="Token", description="Names the native hierarchy while Blender runs", options={"HIDDEN"})
     plan: PointerProperty(name="Plan", type=bpy.types.Text, description="What was decided, as JSON; a remesh can be given it again")
 
 
@@ -40,7 +42,7 @@ def describe(built, source, report, plan="", operations=()):
     collection.operations = json.dumps(list(operations))
     if plan:
         collection.plan = bpy.data.texts.new(with_suffix(built.collection.name, " plan"))
-        collection.plan.write(plan)
+        collection.plan.write(plans.in_lines(plan))
     for level, obj in zip(built.level_names, built.levels, strict=True):
         obj.hybrid_mesh.role = "LEVEL"
         obj.hybrid_mesh.level = level

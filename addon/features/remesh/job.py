@@ -10,6 +10,7 @@ from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
 from ...jobs import NativeJobOperator
+from ..levels import kept
 from ..levels import properties as hierarchy_properties
 
 
@@ -75,7 +76,8 @@ def build_hierarchy(context, obj, result, source, settings):
     """The objects of a task's result, with the report and the plan; returns levels.Built. source, settings: the task's note."""
     hierarchy = result.hierarchy
     parts = [(name, hierarchy.level(name)) for name in hierarchy.level_names]
-    carry = transfer.carrier(source, result.repaired())
+    repaired = result.repaired()
+    carry = transfer.carrier(source, repaired)
     built = levels.build(obj.name, parts, source.matrix, context.scene, placement.same_place(obj), obj, carry)
     try:
         report = json.loads(result.report)
@@ -83,6 +85,7 @@ def build_hierarchy(context, obj, result, source, settings):
         report["settings"] = settings.reported()
         hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
         levels.show_preview_only(built)
+        kept.keep(built.collection, kept.Kept(hierarchy, source, settings, repaired))
     except BaseException:
         _remove(built)
         raise
