@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "construction/construction.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "parameterization/patch_energy.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -18,13 +18,6 @@ HybridMesh hierarchy_of(const QuadGraph& base) {
   for (int q = 0; q < base.patch_count(); ++q)
     for (int i = 0; i < 4; ++i) links[q][i] = {base.neighbours[q][i].patch, base.neighbours[q][i].side};
   return HybridMesh::from_base(base.node_count, base.nodes, links);
-}
-
-double area_of(const PatchMap& map) {
-  double area = 0;
-  for (const auto& t : map.triangles)
-    area += 0.5 * (map.positions[t[1]] - map.positions[t[0]]).cross(map.positions[t[2]] - map.positions[t[0]]).norm();
-  return area;
 }
 
 }  // namespace
@@ -85,7 +78,7 @@ Construction::Construction(HybridMesh hierarchy, const std::vector<int>& root_nu
   quads_ = AddressedGraph(std::move(graph), std::move(addresses), roots);
   std::vector<Vec3> points;
   for (int q = 0; q < mesh_.base_count(); ++q) {
-    area_ += area_of(*mesh_.map(q));
+    area_ += map_area(*mesh_.map(q));
     points.insert(points.end(), mesh_.map(q)->positions.begin(), mesh_.map(q)->positions.end());
   }
   placement_ = placement_of(points);

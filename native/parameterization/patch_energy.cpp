@@ -12,14 +12,11 @@ namespace {
 constexpr double kMostDensity = 100;  // energy a unit of area: a sliver, in which rounding decides, counts for as little as it covers
 
 // Of one face: its energy less its area. A face is a piece of one on which the map is linear.
-double face_excess(const MappedSurface& mapped, int f, double scale, const Distortion& density) {
-  const std::array<int, 3>& c = mapped.surface.mesh.faces[f];
-  const std::vector<Vec3>& p = mapped.surface.mesh.points;
-  const Vec3 e1 = scale * (p[c[1]] - p[c[0]]), e2 = scale * (p[c[2]] - p[c[0]]);
+double face_excess(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& uv, double scale, const Distortion& density) {
+  const Vec3 e1 = scale * (p[1] - p[0]), e2 = scale * (p[2] - p[0]);
   const double l = e1.norm(), twice_area = e1.cross(e2).norm();
   if (!(l > 0 && twice_area > 1e-12)) return 0;
   const double x = e1.dot(e2) / l, y = twice_area / l;
-  const std::array<Vec2, 3>& uv = mapped.corners[f];
   const Vec2 du = (uv[1] - uv[0]) / l, dv = (uv[2] - uv[0] - x * du) / y;
   const Complex a = 0.5 * Complex(du.x() + dv.y(), du.y() - dv.x()), b = 0.5 * Complex(du.x() - dv.y(), du.y() + dv.x());
   const double s = std::norm(a), t = std::norm(b);
@@ -31,8 +28,28 @@ double face_excess(const MappedSurface& mapped, int f, double scale, const Disto
 std::vector<double> patch_energies(const MappedSurface& mapped, double scale, double theta) {
   const Distortion density{theta};
   std::vector<double> energy(mapped.surface.patch_count(), 0);
-  for (int f = 0; f < static_cast<int>(mapped.surface.patch.size()); ++f) energy[mapped.surface.patch[f]] += face_excess(mapped, f, scale, density);
+  const std::vector<Vec3>& points = mapped.surface.mesh.points;
+  for (std::size_t f = 0; f < mapped.surface.patch.size(); ++f) {
+    const std::array<int, 3>& c = mapped.surface.mesh.faces[f];
+    energy[mapped.surface.patch[f]] += face_excess({points[c[0]], points[c[1]], points[c[2]]}, mapped.corners[f], scale, density);
+  }
   return energy;
+}
+
+double map_energy(const PatchMap& map, double scale, double theta) {
+  const Distortion density{theta};
+  double energy = 0;
+  for (const auto& t : map.triangles)
+    energy +=
+        face_excess({map.positions[t[0]], map.positions[t[1]], map.positions[t[2]]}, {map.uv[t[0]], map.uv[t[1]], map.uv[t[2]]}, scale, density);
+  return energy;
+}
+
+double map_area(const PatchMap& map) {
+  double area = 0;
+  for (const auto& t : map.triangles)
+    area += 0.5 * (map.positions[t[1]] - map.positions[t[0]]).cross(map.positions[t[2]] - map.positions[t[0]]).norm();
+  return area;
 }
 
 }  // namespace hybrid_mesh

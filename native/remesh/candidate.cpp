@@ -11,8 +11,8 @@
 #include "parameterization/patch_extraction.h"
 #include "remesh/layout_search_options.h"
 #include "remesh/outlines.h"
-#include "remesh/plan_regions.h"
 #include "remesh/quality.h"
+#include "remesh/skin.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -83,7 +83,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   BaseMap map =
       map_to_base(working.mesh, base, layout_search_options(options, budget, task.source.topology, base, request), task.progress.part(0.15, 0.5));
   origin.level = map.script.levels.front();
-  return assemble_candidate(task, working, std::move(map), origin, {});
+  return assemble_candidate(task, working, std::move(map), origin, [&](Construction& made) { return grow_skin(made, task, budget, base); });
 }
 
 // The vertices of the coarsest uniform mesh that the candidate's hierarchy has, or of one with so many levels.
@@ -157,12 +157,14 @@ Candidate search_candidate(const RemeshTask& task, const Target& target, const s
 }
 
 Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
-                             const std::vector<Plan::Region>& regions) {
+                             const Operations& operations) {
   const Placement& placement = task.source.placement;
   const QuadGraph base = map.levels.front().layout.graph();
   task.watch.start("extract");
   Construction made = construct(map, task, working);
-  repatch_regions(made, regions, placement, task.progress.part(0.55, 0.6));
+  task.watch.start("map");
+  const std::vector<Plan::Region> regions = operations(made);
+  task.watch.start("extract");
   made.close();
   HybridMesh& hierarchy = made.hierarchy();
   hierarchy.set_closure(task.options.faces);

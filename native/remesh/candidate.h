@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "construction/construction.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "layout/search/base_map.h"
 #include "remesh/budget.h"
@@ -51,10 +53,13 @@ Candidate search_candidate(const RemeshTask& task, const Target& target, const s
 // What a plan says: made again as it was on the surface that the plan was made on, else laid out on this one. Throws Error.
 Candidate planned_candidate(const RemeshTask& task, const Plan& plan);
 
-// A map to a base and what was decided, as a candidate. `working`: the surface that the map is of. `regions`: to be laid out anew.
-// Throws Error{Internal} where the map does not hold, and what repatch_regions() throws.
+// Does further irregular operations and returns them as a plan has them.
+using Operations = std::function<std::vector<Plan::Region>(Construction& made)>;
+
+// A map to a base and what was decided, as a candidate. `working`: the surface that the map is of. Throws Error{Internal} where the map does not
+// hold, and what `operations` throws.
 Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
-                             const std::vector<Plan::Region>& regions);
+                             const Operations& operations);
 
 // The base domain that a plan's origin tells of, on the surface that `working` is made of it.
 BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurface& working);

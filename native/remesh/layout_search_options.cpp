@@ -11,12 +11,6 @@ namespace {
 // few to choose from. Two levels with operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice,
 // and neither the distances nor the angles are better.
 constexpr double kLeastQuads = 60, kEnoughQuads = 250;
-// Where skin is grown on a fitted base: so many levels above it, where towers take little of the budget.
-constexpr int kTowerLevel = 2;
-
-// Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
-double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
-
 // A level that is passed through: quadrisected, on so many vertices a quad.
 LevelSearchOptions plain_level(double quads, double vertices) {
   LevelSearchOptions level;
@@ -35,8 +29,8 @@ double quads_for_budget(const Budget& budget, const TopologySummary& topology, d
   }
 }
 
-void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology,
-               const BaseDomain& base, const BaseRequest& request) {
+void search_finer_levels(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology,
+                         const BaseDomain& base, const BaseRequest& request) {
   // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
   LevelSearchOptions& first = search.levels.front();
   if (base.quads() < 20) {
@@ -65,21 +59,9 @@ void grow_skin(LayoutSearchOptions& search, const RemeshOptions& options, const 
   last.trials = 30;
 }
 
-// A fitted base has quads where the shape asks for them; what is far longer than wide grows skin on a level above. Not for adaptive meshes: they
-// would begin with all quads of that level.
-void grow_towers(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const BaseDomain& base) {
-  if (options.semi_regular || options.base == BaseSize::Given || options.refinement != Refinement::Uniform || budget.levels <= kTowerLevel) return;
-  const double cells = std::pow(4.0, kTowerLevel);
-  for (int j = 1; j <= kTowerLevel; ++j) search.levels.push_back(plain_level(base.quads() * std::pow(4.0, j), 30));
-  search.stretch = options.stretch_threshold;
-  LevelSearchOptions& last = search.levels.back();
-  last.threshold = excess_of_stretch(options.stretch_threshold);
-  last.quads = static_cast<int>(cells * (budget.base_size - budget.boundary_side * base.boundary_sides()));
-  last.rounds = 2;
-  last.trials = 30;
-}
-
 }  // namespace
+
+double excess_of_stretch(double stretch) { return 0.5 * GlobalMapOptions().theta * (stretch + 1 / stretch - 2); }
 
 LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base,
                                           const BaseRequest& request) {
@@ -87,10 +69,7 @@ LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Bu
   LevelSearchOptions& first = search.levels.emplace_back();
   first.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
   first.vertices = 30.0 * base.quads();
-  if (options.base == BaseSize::Minimal)
-    grow_skin(search, options, budget, topology, base, request);
-  else
-    grow_towers(search, options, budget, base);
+  if (options.base == BaseSize::Minimal) search_finer_levels(search, options, budget, topology, base, request);
   return search;
 }
 

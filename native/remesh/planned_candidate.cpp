@@ -6,6 +6,7 @@
 #include "layout/search/base_map.h"
 #include "remesh/candidate.h"
 #include "remesh/outlines.h"
+#include "remesh/plan_regions.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -18,6 +19,13 @@ LayoutScript script_over(LayoutScript::Level base, const Plan& plan) {
   LayoutScript script{{std::move(base)}};
   script.levels.insert(script.levels.end(), plan.levels.begin(), plan.levels.end());
   return script;
+}
+
+Operations operations_of(const RemeshTask& task, const Plan& plan) {
+  return [&](Construction& made) {
+    repatch_regions(made, plan.regions, task.source.placement, task.progress.part(0.55, 0.6));
+    return plan.regions;
+  };
 }
 
 BaseMap map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, WorkingSurface& working) {
@@ -40,7 +48,7 @@ Candidate grow(const RemeshTask& task, const Plan& plan) {
     Plan::Origin origin;
     origin.surface = task.source.fingerprint;
     origin.tower = plan.tower;
-    return assemble_candidate(task, working, std::move(map), origin, plan.regions);
+    return assemble_candidate(task, working, std::move(map), origin, operations_of(task, plan));
   } catch (const Error& e) {
     if (e.code() != ErrorCode::Internal) throw;
     throw Error(ErrorCode::Unsupported, std::string("no map to a chain of cubes on the boundary is found: ") + e.what());
@@ -59,7 +67,7 @@ std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
       const BaseDomain base = make_base(task, *plan.origin, working);
       map = map_to_base(working.mesh, base, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
     }
-    Candidate c = assemble_candidate(task, working, std::move(map), plan.origin, plan.regions);
+    Candidate c = assemble_candidate(task, working, std::move(map), plan.origin, operations_of(task, plan));
     const LayoutOutline made = plan_from_json(c.plan).base;
     if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;
     return c;
@@ -88,7 +96,7 @@ Candidate lay_out(const RemeshTask& task, const Plan& plan) {
     for (LayoutScript::Edit& edit : level.edits) edit.even_quads = 0;
   try {
     BaseMap map = map_to_base(working.mesh, to_patched_surface(laid.layout), script, task.progress.part(0.2, 0.45));
-    return assemble_candidate(task, working, std::move(map), std::nullopt, plan.regions);
+    return assemble_candidate(task, working, std::move(map), std::nullopt, operations_of(task, plan));
   } catch (const Error& e) {
     if (e.code() != ErrorCode::Internal) throw;
     throw Error(ErrorCode::Unsupported, std::string("no map to the plan's quads is found on this surface: ") + e.what());

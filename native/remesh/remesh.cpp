@@ -50,16 +50,34 @@ double mean_quad_width(const QuadMesh& mesh) {
   return std::sqrt(area / static_cast<double>(mesh.face_count()));
 }
 
-// Whether a base has missed a tip by bad luck, which shows in the fit: a point of the surface is farther off than a quad is wide.
-bool has_missed_a_tip(const Candidate& c) { return c.distance.hausdorff >= 1.25 * mean_quad_width(c.final_mesh); }
+// In widths of a quad: how far off a point of the surface is. Above 1.25 the base has missed something that sticks out.
+double farthest(const Candidate& c) { return c.distance.hausdorff / mean_quad_width(c.final_mesh); }
+constexpr double kMissed = 1.25;
+// Where the shape has no limbs that a minimal base keeps, only what is as far off as this is worth the time of another base.
+constexpr double kMissedByFar = 2;
+
+// Only disks can be laid out anew on finer levels, and where there are handles these are a small part.
+bool minimal_base_grows_skin(const RemeshTask& task) {
+  return task.options.base == BaseSize::Auto && !task.options.semi_regular && task.source.topology.genus <= task.source.topology.components;
+}
+
+// What is tried where the first remesh has missed something: a minimal base, which has few quads and grows skin on a finer level, keeps limbs that a
+// fitted one loses; else a base of which near-ties are decided in another way.
+Candidate another_candidate(const RemeshTask& task) {
+  RemeshOptions options = task.options;
+  const bool minimal = minimal_base_grows_skin(task);
+  if (minimal) options.base = BaseSize::Minimal;
+  const RemeshTask other{options, task.source, task.progress, task.watch};
+  return fitted(other, search_candidate(other, {}, base_requests(options, !minimal)), true);
+}
 
 // The best of what is tried.
 Candidate best_candidate(const RemeshTask& task) {
   Candidate best = fitted(task, search_candidate(task, {}, base_requests(task.options, false)), true);
-  if (task.options.error > 0 || !has_missed_a_tip(best)) return best;
+  if (task.options.error > 0 || farthest(best) < (minimal_base_grows_skin(task) ? kMissed : kMissedByFar)) return best;
   try {
-    Candidate other = fitted(task, search_candidate(task, {}, base_requests(task.options, true)), true);
-    if (other.distance.hausdorff < best.distance.hausdorff) return other;
+    Candidate other = another_candidate(task);
+    if (other.distance.hausdorff < best.distance.hausdorff && other.distance.l2 <= best.distance.l2) return other;
   } catch (const Error& e) {
     if (e.code() == ErrorCode::Cancelled) throw;
   }

@@ -130,12 +130,12 @@ std::vector<int> with_rings(const QuadGraph& level, const std::vector<int>& patc
 
 // Smooths the map of a part of the level, and holds its rim where the level goes on, so that the maps around still fit. Returns its energy beyond an
 // isometry's.
-double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<std::array<bool, 4>>& held, const Progress& progress) {
+double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<std::array<bool, 4>>& held, GlobalMapOptions options,
+             const Progress& progress) {
   for (int q = 0; q < part.patch_count(); ++q)
     for (int i = 0; i < 4; ++i)
       if (held[q][i])
         for (const int v : part.sides[q][i]) charts.kind[v] = ChartMesh::Kind::Pinned;
-  GlobalMapOptions options;
   options.corners_move = false;  // ends of the rim are among them
   double area = 0;
   for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
@@ -204,7 +204,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
 
   ChartMesh charts(smoothed.surface, corners);
   charts.scale = scale;
-  out.energy_after = relax(charts, smoothed.surface, held, progress.part(0.5, 0.8));
+  out.energy_after = relax(charts, smoothed.surface, held, repatch.map, progress.part(0.5, 0.8));
   std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.mapped.surface.mesh.faces, progress.part(0.8, 1));
   for (std::size_t k = 0; k < relaxed.size(); ++k) {
     if (const char* defect = find_map_defect(fresh[k]); *defect)

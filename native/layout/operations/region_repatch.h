@@ -6,6 +6,7 @@
 
 #include "layout/drawn/drawn_layout.h"
 #include "layout/level_state.h"
+#include "parameterization/global_map.h"
 
 namespace hybrid_mesh {
 
@@ -29,6 +30,7 @@ struct RegionRepatch {
   PatchSide start;        // the boundary side that begins at corner 0; patch -1: any
   RegionPattern pattern;  // its strokes where the level's maps have the surface
   int buffer_rings = 1;   // so many rings of quads around are relaxed with the new ones; 0: none
+  GlobalMapOptions map;   // how much is done for a smooth map
 };
 
 // Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is

@@ -77,8 +77,8 @@ BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& bas
 }  // namespace
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
-  return map_coarse_to_fine(surface, base, options.levels[0].vertices, options.levels.size() > 1 && options.stretch == 0, options.levels[0].map,
-                            progress, [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
+  return map_coarse_to_fine(surface, base, options.levels[0].vertices, options.levels.size() > 1, options.levels[0].map, progress,
+                            [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
 }
 
 BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress) {

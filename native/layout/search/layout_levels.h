@@ -29,8 +29,7 @@ struct MappedLayouts {
 using LevelWork = std::function<std::vector<LayoutScript::Edit>(TrialMap& map, std::size_t level, const Progress& progress)>;
 
 // Maps a base and works on it, then on its quadrants, and so on, a level for each of `versions`. The maps of levels that have edits are carried to
-// the surface meanwhile. `stretch`: above 0, finer levels are left out unless quads of the last one would cover so many times the mean area, and
-// where they cannot be had. Throws Error{Internal} where a map cannot be found or carried to the surface.
-MappedLayouts map_levels(CarriedMap base, const std::vector<LevelVersion>& versions, double stretch, const LevelWork& work, const Progress& progress);
+// the surface meanwhile. Throws Error{Internal} where a map cannot be found or carried to the surface.
+MappedLayouts map_levels(CarriedMap base, const std::vector<LevelVersion>& versions, const LevelWork& work, const Progress& progress);
 
 }  // namespace hybrid_mesh

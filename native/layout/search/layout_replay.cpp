@@ -71,7 +71,7 @@ MappedLayouts replay_layout(CarriedMap map, const LayoutScript& script, const Pr
     for (const std::vector<LayoutScript::Edit>& round : rounds_of(script.levels[level])) repeat_round(trial, round, versions[level].map, part);
     return script.levels[level].edits;
   };
-  return map_levels(std::move(map), versions, 0, repeat, progress);
+  return map_levels(std::move(map), versions, repeat, progress);
 }
 
 }  // namespace hybrid_mesh

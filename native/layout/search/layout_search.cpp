@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "layout/search/edit_candidates.h"
+#include "layout/search/edit_search.h"
 #include "layout/search/even_regions.h"
 
 namespace hybrid_mesh {
@@ -48,7 +48,7 @@ std::vector<LayoutEdit> improve_once(TrialMap& map, const EditSearchOptions& opt
 Edits improve(TrialMap& map, const LevelSearchOptions& options, const Progress& progress) {
   const int now = map.best().layout.patch_count();
   const int most = now <= options.quads ? options.quads : now + now / 3;
-  const EditSearchOptions search{options.map, most, options.price, options.irregular_price, options.trials, options.threshold};
+  const EditSearchOptions search{options.map, {most, options.price, options.irregular_price, options.trials, options.threshold}};
   Edits made;
   for (int round = 0; round < options.rounds; ++round) {
     const Progress part = progress.part(static_cast<double>(round) / options.rounds, (round + 1.0) / options.rounds);
@@ -73,7 +73,7 @@ MappedLayouts search_layout(CarriedMap map, const LayoutSearchOptions& options, 
     made.insert(made.end(), further.begin(), further.end());
     return made;
   };
-  return map_levels(std::move(map), versions, options.stretch, search, progress);
+  return map_levels(std::move(map), versions, search, progress);
 }
 
 }  // namespace hybrid_mesh

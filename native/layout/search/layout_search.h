@@ -24,7 +24,6 @@ struct LevelSearchOptions {
 
 struct LayoutSearchOptions {
   std::vector<LevelSearchOptions> levels;  // the base, and the levels above it that are worked on
-  double stretch = 0;  // above 0: finer levels are worked on only where quads of the last one would cover so many times the mean area
 };
 
 // Smooths the map of a cut surface, and improves its layout by local edits between: each is tried out, the region and its surroundings mapped anew,

@@ -314,7 +314,7 @@ TEST(LayoutSearch, GrowsSkinOnFinerLevels) {
   level.quads = 6;
   level.vertices = 1500;
   level.map.vertices_a_quad = 150;
-  LayoutSearchOptions options{{level}, 0};
+  LayoutSearchOptions options{{level}};
   const BaseMap without = map_to_base(surface, base, options, Progress(context));
   level.vertices = 3000;
   level.quads = 130;
