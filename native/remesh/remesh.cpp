@@ -213,7 +213,7 @@ class Remesher {
   void try_base(int attempt) {
     Plan::Origin origin;
     origin.surface = fingerprint(result_.repaired);
-    origin.faces = static_cast<std::int64_t>(std::min(30.0 * budget_.base_size, 2e6));
+    origin.faces = static_cast<std::int64_t>(std::min(std::max(30.0 * budget_.base_size, 2.0 * static_cast<double>(budget_.vertices)), 2e6));
     BaseDomainOptions& base_options = origin.base;
     base_options.size = budget_.base_size;
     base_options.boundary_side = budget_.boundary_side;
@@ -234,7 +234,7 @@ class Remesher {
   BaseDomain make_base(const Plan::Origin& origin) {
     progress_.stage("base domain");
     watch_.start("base");
-    working_ = make_working_surface(result_.repaired, placement_, origin.faces);
+    working_ = make_working_surface(result_.repaired, placement_, origin.faces, progress_.part(0.05, 0.05));
     BaseDomain base(working_.mesh, origin.base, progress_.part(0.05, 0.15));
     progress_.stage("map");
     watch_.start("map");
@@ -367,7 +367,7 @@ class Remesher {
     progress_.stage("base domain");
     watch_.start("base");
     constexpr int likely = 8;
-    working_ = make_working_surface(result_.repaired, placement_, 30 * (4 * std::max(likely, tower.cubes) + 1));
+    working_ = make_working_surface(result_.repaired, placement_, 30 * (4 * std::max(likely, tower.cubes) + 1), progress_.part(0.05, 0.05));
     for (Vec3& p : tower.nodes) p = placement_.to_unit(p);
     PatchedSurface base = grow_boundary_tower(working_.mesh, tower, progress_.part(0.05, 0.2));
     progress_.stage("map");
@@ -410,7 +410,7 @@ class Remesher {
   void lay_out() {
     progress_.stage("base domain");
     watch_.start("base");
-    working_ = make_working_surface(result_.repaired, placement_, 30 * static_cast<std::int64_t>(plan_->base.quads.size()));
+    working_ = make_working_surface(result_.repaired, placement_, 30 * static_cast<std::int64_t>(plan_->base.quads.size()), progress_.part(0.05, 0.05));
     LayoutOutline outline = plan_->base;
     const auto to_unit = [&](const Vec3& p) { return placement_.to_unit(p); };
     move_outline(outline, to_unit);
