@@ -213,6 +213,7 @@ class Remesher {
   void try_base(int attempt) {
     Plan::Origin origin;
     origin.surface = fingerprint(result_.repaired);
+    // As large as halves of the final quads, and small enough for the base to choose from.
     origin.faces = static_cast<std::int64_t>(std::min(std::max(30.0 * budget_.base_size, 2.0 * static_cast<double>(budget_.vertices)), 2e6));
     BaseDomainOptions& base_options = origin.base;
     base_options.size = budget_.base_size;

@@ -120,9 +120,8 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   for (Vec3& p : placed.points) p = placement.to_unit(p);
   const double edge = std::sqrt(4 / std::sqrt(3.0) * area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces)));
   WellShapedOptions options;
-  options.longest_edge = (getenv("WSL")?atof(getenv("WSL")):sizes.longest) * edge;
-  if(getenv("WSA")) options.least_angle=atof(getenv("WSA"));
-  options.shortest_edge = (getenv("WSS")?atof(getenv("WSS")):sizes.shortest) * edge;
+  options.longest_edge = sizes.longest * edge;
+  options.shortest_edge = sizes.shortest * edge;
   options.collapsible = sizes.collapsible * edge;
   options.tolerance = std::min(sizes.tolerance * edge, sizes.most_tolerance);
   WellShaped shaped = make_well_shaped(placed, options, progress);
@@ -132,7 +131,6 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   w.placement = placement;
   w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
   split_chords(w);
-  if(getenv("WSV")) fprintf(stderr,"working: %zu points\n",w.mesh.points.size());
   return w;
 }
 

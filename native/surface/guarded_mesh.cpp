@@ -11,6 +11,8 @@ namespace {
 
 // Flips that are worth their while: rounding must not make them go round in circles.
 constexpr double kGain = 1 + 1e-7;
+// A collapse may leave other needles around the vertex about as thin as they were; there is a vertex less, so that it cannot go round in circles.
+constexpr double kWorth = 0.9;
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -209,7 +211,7 @@ bool GuardedMesh::collapse(int h, double enough) {
     if (!(fresh.dot(up) > 0.3 * fresh.norm() * size)) return false;
     for (const Vec3& p : {to, a, b}) thickness[f.sector] = std::max(thickness[f.sector], std::abs((p - from).dot(up)) / size);
   }
-  if (!(after > kGain * star.before || after >= enough)) return false;
+  if (!(after >= kWorth * star.before || after >= enough)) return false;
   if (star.curve >= 0 && !stays_on_curve(h, star)) return false;
   // Old and new faces lie in a slab over the same polygon.
   double moved = star.moved + 2 * std::max(thickness[0], thickness[1]) + star.curve_moved;

@@ -44,7 +44,7 @@ class GuardedMesh {
 
   // Flips the edge if that makes the smaller of the smallest angles larger.
   bool flip(int h);
-  // Moves from(h) onto to(h) if no smallest angle around gets smaller, unless it stays above `enough`.
+  // Moves from(h) onto to(h) if the smallest angle around hardly gets smaller, or stays above `enough`.
   bool collapse(int h, double enough);
   // Splits the edge about where `fraction` of it is, at a point that the curve once went through if there is one. Gives the new vertex.
   int split(int h, double fraction);
