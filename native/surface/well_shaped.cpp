@@ -113,13 +113,17 @@ class Shaping {
   }
 
   // --- refinement ----------------------------------------------------------------------------------------------------------------
-  // An angle that the input has: no splits would make it larger.
-  bool is_forced(int corner) const { return mesh_.is_held(corner) && mesh_.is_held(EditMesh::prev(corner)); }
-
   bool is_bad(int f) const {
     if (mesh_.length(mesh_.longest(f)) > options_.longest_edge) return true;
     const int corner = mesh_.smallest_corner(f);
-    return mesh_.corner_angle(corner) < least_angle_ && !is_forced(corner);
+    const double angle = mesh_.corner_angle(corner);
+    if (angle >= least_angle_) return false;
+    const int sides[2] = {corner, EditMesh::prev(corner)};
+    const bool held[2] = {mesh_.is_held(sides[0]), mesh_.is_held(sides[1])};
+    if (held[0] && held[1]) return false;  // an angle that the input has: no splits would make it larger
+    for (int i = 0; i < 2; ++i)
+      if (held[i] && !mesh_.is_curve(sides[i])) return angle < radians(options_.least_bent_angle);
+    return true;
   }
 
   // The edge whose split is to mend the face: the longest of the faces around that are ever larger, or a held edge beside it, near which its middle

@@ -202,7 +202,7 @@ TEST(WellShaped, MendsNeedles) {
     const WellShaped result = shaped(input, options);
     expect_same_surface(input, result, options);
     expect_no_long_edges(result.mesh, options);
-    EXPECT_LE(faces_below(result.mesh, 20), static_cast<int>(result.mesh.faces.size() / 200)) << strips;
+    EXPECT_LE(faces_below(result.mesh, options.least_bent_angle), static_cast<int>(result.mesh.faces.size() / 200)) << strips;
     // As many as the sizes ask for, however many strips there were.
     EXPECT_LT(result.mesh.points.size(), 12000u) << strips;
   }
@@ -217,7 +217,8 @@ TEST(WellShaped, MendsFans) {
     expect_same_surface(input, result, options);
     expect_no_long_edges(result.mesh, options);
     // At the tip of a cone the input's angles stay.
-    EXPECT_LE(faces_below(result.mesh, 20), height > 0 ? static_cast<int>(result.mesh.faces.size() / 50) : 0) << height;
+    const double least = height > 0 ? options.least_bent_angle : 20;
+    EXPECT_LE(faces_below(result.mesh, least), height > 0 ? static_cast<int>(result.mesh.faces.size() / 50) : 0) << height;
     EXPECT_LT(result.mesh.points.size(), 20000u) << height;
   }
 }
