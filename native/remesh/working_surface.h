@@ -36,7 +36,7 @@ struct WorkingSurface {
 
 // How long the edges of a working surface are, as fractions of those of the given number of equal equilateral triangles on the same area.
 struct WorkingSizes {
-  double longest = 1.9;          // maps are straight within a triangle: too few of them for the quads make uneven quads
+  double longest = 2.2;          // maps are straight within a triangle: too few of them for the quads make uneven quads
   double shortest = 0.1;         // smaller things are lost between the final quads
   double collapsible = 0.5;      // well below the longest: what is collapsed is not split again
   double tolerance = 0.002;      // distance that the surface may move: far below the error that quads of that size have
