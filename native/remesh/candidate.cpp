@@ -68,7 +68,9 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   const RemeshOptions& options = task.options;
   Plan::Origin origin;
   origin.surface = task.source.fingerprint;
-  origin.faces = static_cast<std::int64_t>(std::min(kFacesAQuad * budget.base_size, kMostFaces));
+  // As large as halves of the final quads, and small enough for the base to choose from.
+  origin.faces =
+      static_cast<std::int64_t>(std::min(std::max(kFacesAQuad * budget.base_size, 2.0 * static_cast<double>(budget.vertices)), kMostFaces));
   BaseDomainOptions& base_options = origin.base;
   base_options.size = budget.base_size;
   base_options.boundary_side = budget.boundary_side;
@@ -120,7 +122,7 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
 BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurface& working) {
   task.progress.stage("base domain");
   task.watch.start("base");
-  working = make_working_surface(task.source.repaired, task.source.placement, origin.faces);
+  working = make_working_surface(task.source.repaired, task.source.placement, origin.faces, task.progress.part(0.05, 0.05));
   BaseDomain base(working.mesh, origin.base, task.progress.part(0.05, 0.15));
   task.progress.stage("map");
   task.watch.start("map");

@@ -32,7 +32,8 @@ BaseMap map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& pl
   const Placement& placement = task.source.placement;
   task.progress.stage("base domain");
   task.watch.start("base");
-  working = make_working_surface(task.source.repaired, placement, kFacesAQuad * (4 * std::max(kLikelyCubes, tower.cubes) + 1));
+  working = make_working_surface(task.source.repaired, placement, kFacesAQuad * (4 * std::max(kLikelyCubes, tower.cubes) + 1),
+                                 task.progress.part(0.05, 0.05));
   for (Vec3& p : tower.nodes) p = placement.to_unit(p);
   PatchedSurface base = grow_boundary_tower(working.mesh, tower, task.progress.part(0.05, 0.2));
   task.progress.stage("map");
@@ -81,8 +82,8 @@ Candidate lay_out(const RemeshTask& task, const Plan& plan) {
   const Placement& placement = task.source.placement;
   task.progress.stage("base domain");
   task.watch.start("base");
-  const WorkingSurface working =
-      make_working_surface(task.source.repaired, placement, kFacesAQuad * static_cast<std::int64_t>(plan.base.quads.size()));
+  const WorkingSurface working = make_working_surface(
+      task.source.repaired, placement, kFacesAQuad * static_cast<std::int64_t>(plan.base.quads.size()), task.progress.part(0.05, 0.05));
   LayoutOutline outline = plan.base;
   const auto to_unit = [&](const Vec3& p) { return placement.to_unit(p); };
   move_outline(outline, to_unit);

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/working_surface.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 
+#include "parameterization/patched_surface.h"
 #include "surface/edit_mesh.h"
+#include "surface/well_shaped.h"
 
 namespace hybrid_mesh {
 namespace {
 
+using Weights = std::array<double, 3>;
+
 // A side of the base that runs along the boundary is a straight line in the map: a triangle between an inner edge that joins two of its vertices and
 // that line would have no area.
-void split_chords(TriangleSurface& mesh, std::vector<PointSource>& source) {
+void split_chords(WorkingSurface& surface) {
+  TriangleSurface& mesh = surface.mesh;
   if (std::find(mesh.opposite.begin(), mesh.opposite.end(), -1) == mesh.opposite.end()) return;
   const std::vector<int> loop = EditMesh(mesh).boundary_loops();
   const int points = static_cast<int>(mesh.points.size());
+  std::vector<PointSource> sources(points);  // asked for, not used: places say more
   for (bool any = true; any;) {
     any = false;
     std::vector<char> split(mesh.faces.size(), 0);
@@ -21,11 +30,47 @@ void split_chords(TriangleSurface& mesh, std::vector<PointSource>& source) {
       const int o = mesh.opposite[h], a = mesh.from(h), b = mesh.to(h);
       if (o < h || a >= points || b >= points || loop[a] < 0 || loop[a] != loop[b] || split[h / 3] || split[o / 3]) continue;
       split[h / 3] = split[o / 3] = 1;
-      split_inner_edge(mesh, source, h);
+      split_inner_edge(mesh, sources, h);
+      const ClosestPoint closest = surface.query->closest(mesh.points.back(), mesh.source_face[h / 3]);
+      surface.place.push_back({closest.face, closest.weights});
       any = true;
     }
     if (any) connect_half_edges(mesh);
   }
+}
+
+// Weights of a place for the corners of a face; false if it does not lie on it.
+bool weights_on(const SurfacePoint& place, int face, const TriangleSurface& surface, Weights& weights) {
+  weights = place.weights;
+  if (place.face == face) return true;
+  weights = {0, 0, 0};
+  double sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (surface.faces[place.face][k] == surface.faces[face][i]) weights[i] += place.weights[k], sum += place.weights[k];
+  constexpr double rounding = 1e-9;
+  return sum > 1 - rounding;
+}
+
+// Barycentrics of the point of the triangle's plane next to p, moved onto the triangle.
+Weights weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
+  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  Weights w{0, 0, 0};
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    w[i] = std::max(0.0, (corners[(i + 1) % 3] - p).cross(corners[(i + 2) % 3] - p).dot(normal));
+    sum += w[i];
+  }
+  if (!(sum > 0)) return {1, 0, 0};
+  for (double& x : w) x /= sum;
+  return w;
+}
+
+double area_of(const TriangleSurface& surface) {
+  double area = 0;
+  for (const auto& [a, b, c] : surface.faces)
+    area += 0.5 * (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm();
+  return area;
 }
 
 }  // namespace
@@ -33,53 +78,46 @@ void split_chords(TriangleSurface& mesh, std::vector<PointSource>& source) {
 void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired) const {
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
     const int face = map.source_face[t];
-    const int original = mesh.source_face[face];
-    std::array<std::array<double, 3>, 3> corner;
-    for (int k = 0; k < 3; ++k) corner[k] = weights_in_face(source[mesh.faces[face][k]], repaired.faces[original]);
-    std::array<float, 9> fresh{};
+    int original = mesh.source_face[face];
+    std::array<Weights, 3> corner;  // of the face, in the original one
+    bool on_one = true;
+    for (int k = 0; k < 3; ++k) on_one &= weights_on(place[mesh.faces[face][k]], original, repaired, corner[k]);
+    std::array<Weights, 3> fresh{};  // of the map's triangle
+    if (on_one) {
+      for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k) fresh[c][i] += map.source[t][3 * c + k] * corner[k][i];
+    } else {
+      std::array<Vec3, 3> at{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, under;
+      for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < 3; ++k) at[c] += map.source[t][3 * c + k] * mesh.points[mesh.faces[face][k]];
+      original = query->closest((at[0] + at[1] + at[2]) / 3, original).face;
+      for (int i = 0; i < 3; ++i) under[i] = placement.to_unit(repaired.points[repaired.faces[original][i]]);
+      for (int c = 0; c < 3; ++c) fresh[c] = weights_in_triangle(at[c], under);
+    }
     for (int c = 0; c < 3; ++c)
-      for (int i = 0; i < 3; ++i) {
-        double w = 0;
-        for (int k = 0; k < 3; ++k) w += map.source[t][3 * c + k] * corner[k][i];
-        fresh[3 * c + i] = static_cast<float>(w);
-      }
-    map.source[t] = fresh;
+      for (int i = 0; i < 3; ++i) map.source[t][3 * c + i] = static_cast<float>(fresh[c][i]);
     map.source_face[t] = original;
   }
 }
 
-WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t least_faces) {
+WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
+                                    const WorkingSizes& sizes) {
+  TriangleSurface placed = repaired;
+  for (Vec3& p : placed.points) p = placement.to_unit(p);
+  const double edge = std::sqrt(4 / std::sqrt(3.0) * area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces)));
+  WellShapedOptions options;
+  options.longest_edge = sizes.longest * edge;
+  options.shortest_edge = sizes.shortest * edge;
+  options.collapsible = sizes.collapsible * edge;
+  options.tolerance = std::min(sizes.tolerance * edge, sizes.most_tolerance);
+  WellShaped shaped = make_well_shaped(placed, options, progress);
   WorkingSurface w;
-  w.mesh = repaired;
-  for (Vec3& p : w.mesh.points) p = placement.to_unit(p);
-  for (std::size_t f = 0; f < repaired.faces.size(); ++f) w.mesh.source_face[f] = static_cast<int>(f);
-  for (std::size_t v = 0; v < repaired.points.size(); ++v) w.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
-  while (static_cast<std::int64_t>(w.mesh.faces.size()) < least_faces) {
-    TriangleSurface& m = w.mesh;
-    std::vector<int> middle(m.opposite.size(), -1);
-    for (int h = 0; h < static_cast<int>(m.opposite.size()); ++h) {
-      if (middle[h] >= 0) continue;
-      const int a = m.from(h), b = m.to(h);
-      middle[h] = static_cast<int>(m.points.size());
-      if (m.opposite[h] >= 0) middle[m.opposite[h]] = middle[h];
-      m.points.push_back(0.5 * (m.points[a] + m.points[b]));
-      w.source.push_back(middle_of(w.source[a], w.source[b]));
-    }
-    std::vector<std::array<int, 3>> faces;
-    std::vector<int> source_face;
-    for (std::size_t f = 0; f < m.faces.size(); ++f) {
-      const auto [a, b, c] = m.faces[f];
-      const int x = middle[3 * f], y = middle[3 * f + 1], z = middle[3 * f + 2];
-      for (const std::array<int, 3>& t : {std::array<int, 3>{a, x, z}, {x, b, y}, {z, y, c}, {x, y, z}}) {
-        faces.push_back(t);
-        source_face.push_back(m.source_face[f]);
-      }
-    }
-    m.faces = std::move(faces);
-    m.source_face = std::move(source_face);
-    connect_half_edges(m);
-  }
-  split_chords(w.mesh, w.source);
+  w.mesh = std::move(shaped.mesh);
+  w.place = std::move(shaped.place);
+  w.placement = placement;
+  w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
+  split_chords(w);
   return w;
 }
 

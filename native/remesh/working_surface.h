@@ -2,23 +2,42 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
+#include "base/context.h"
 #include "parameterization/patch_map.h"
-#include "parameterization/patched_surface.h"
+#include "surface/closest_point.h"
 #include "surface/placement.h"
 #include "surface/polygon_soup.h"
+#include "surface/triangle_surface.h"
 
 namespace hybrid_mesh {
 
-// The repaired surface as the base domain and the maps are built on it: placed, and with its faces split in four where it has too few for the quads
-// that are to be cut out of it (the same set of points).
+// The surface on which the base domain and the maps are built: the repaired one, placed, in well-shaped triangles of the size that is asked for.
 struct WorkingSurface {
-  TriangleSurface mesh;             // source_face: face of the repaired surface
-  std::vector<PointSource> source;  // per point, in points of the repaired surface
+  TriangleSurface mesh;             // source_face: face of the repaired surface that the face lies on, or mostly if it lies on several
+  std::vector<SurfacePoint> place;  // per point, on the repaired surface
 
-  // Makes a map's sources, given in faces of `mesh`, name faces of the repaired surface.
+  // Makes a map's sources, given in faces of `mesh`, name faces of the repaired surface: of a triangle that lies on several the one under its
+  // middle, and corners that are beyond it are moved onto it.
   void to_repaired(PatchMap& map, const TriangleSurface& repaired) const;
+
+  Placement placement;
+  std::shared_ptr<const SurfaceDistanceQuery> query;  // of the placed repaired surface
 };
-WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t least_faces);
+
+// How long the edges of a working surface are, as fractions of those of the given number of equal equilateral triangles on the same area.
+struct WorkingSizes {
+  double longest = 2.2;          // maps are straight within a triangle: too few of them for the quads make uneven quads
+  double shortest = 0.1;         // smaller things are lost between the final quads
+  double collapsible = 0.5;      // well below the longest: what is collapsed is not split again
+  double tolerance = 0.002;      // distance that the surface may move: far below the error that quads of that size have
+  double most_tolerance = 3e-5;  // the same as a fraction of the diagonal, for the coarsest meshes
+};
+
+// `faces` says how large its triangles are to be, not how many there are: equal ones of that number would be as large. Where the repaired surface's
+// are smaller, they stay.
+WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
+                                    const WorkingSizes& sizes = WorkingSizes());
 
 }  // namespace hybrid_mesh

@@ -258,4 +258,39 @@ void EditMesh::undo_flip(int h) {
   for (int i = 0; i < 3; ++i) flip(h);
 }
 
+int EditMesh::split(int h) {
+  const int o = opposite[h], m = static_cast<int>(out.size());
+  out.push_back(-1);
+  vertex_live.push_back(1);
+  ++vertex_count;
+  const int far_name = edge_count++;  // of the half beyond the new vertex
+  // The face beside g = (x, y, z) keeps x, the fresh one has y: (m, y, z).
+  const auto halve = [&](int g) {
+    const int n = next(g), y = origin[n], z = origin[prev(g)], f = static_cast<int>(origin.size());
+    origin.insert(origin.end(), {m, y, z});
+    const int beyond = opposite[n];
+    opposite.insert(opposite.end(), {-1, beyond, n});
+    if (beyond >= 0) opposite[beyond] = f + 1;
+    edge.insert(edge.end(), {-1, edge[n], edge_count});
+    edge[n] = edge_count++;
+    origin[n] = m;
+    opposite[n] = f + 2;
+    alive.push_back(1);
+    ++face_count;
+    if (out[y] == n) out[y] = f + 1;
+    return f;
+  };
+  const int fresh = halve(h);
+  edge[fresh] = far_name;
+  out[m] = fresh;
+  if (o >= 0) {
+    const int across = halve(o);
+    edge[across] = edge[h];
+    edge[o] = far_name;
+    opposite[h] = across, opposite[across] = h;
+    opposite[o] = fresh, opposite[fresh] = o;
+  }
+  return m;
+}
+
 }  // namespace hybrid_mesh

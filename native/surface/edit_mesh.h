@@ -58,6 +58,8 @@ class EditMesh {
   bool can_flip(int h) const;
   void flip(int h);
   void undo_flip(int h);
+  // Puts a new vertex, whose number is given back, on the edge of h; its faces are split in two. The half-edge h now ends there. Not undone.
+  int split(int h);
 
   std::vector<int> origin, opposite, edge;               // per half-edge
   std::vector<int> out;                                  // per vertex

@@ -79,8 +79,9 @@ class Prism {
 
   // Whether the part of a face that lies over or under the triangle does so no farther than the height.
   bool stays_between_caps(const std::array<Vec3, 3>& face) const {
-    // Clipped by the three sides, a triangle has six corners at most.
-    std::array<Vec3, 6> polygon{face[0], face[1], face[2]}, clipped;
+    // Clipped by the three sides, a triangle has six corners at most; up to nine where it is so thin that rounding makes it wind to and fro across
+    // a side.
+    std::array<Vec3, 9> polygon{face[0], face[1], face[2]}, clipped;
     int count = 3;
     for (int i = 0; i < 3; ++i) {
       const Vec2 &a = corners_[i], side = corners_[(i + 1) % 3] - a;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surface/closest_point.h"
+#include "surface/edit_mesh.h"
+#include "surface/triangle_surface.h"
+
+namespace hybrid_mesh {
+
+struct GuardOptions {
+  double tolerance = 1e-5;  // distance that the surface may move
+  double sharp_angle = 30;  // degrees between the normals of two faces from which their edge is a feature
+};
+
+// A triangle mesh whose flips, collapses and splits are done only where they leave the surface within a tolerance of the one it was made from,
+// however many there are: each face knows a bound of its distance to that surface, to which an operation adds what it moves; where the bound has run
+// out, the distance is measured anew. Curves (boundaries and sharp edges) are held in the same way by the points that were taken out of them.
+class GuardedMesh {
+ public:
+  GuardedMesh(const TriangleSurface& input, const GuardOptions& options);
+
+  const EditMesh& mesh() const { return mesh_; }
+  const Vec3& point(int v) const { return points_[v]; }
+  int point_count() const { return static_cast<int>(points_.size()); }
+  const SurfacePoint& place(int v) const { return place_[v]; }
+  int face_count() const { return static_cast<int>(mesh_.alive.size()); }  // dead ones included
+
+  double length(int h) const { return (points_[mesh_.to(h)] - points_[mesh_.from(h)]).norm(); }
+  int longest(int f) const;
+  int shortest(int f) const;
+  // The smallest angle of a face, and the half-edge that leaves its corner.
+  double smallest_angle(int f) const { return corner_angle(smallest_corner(f)); }
+  int smallest_corner(int f) const { return EditMesh::prev(shortest(f)); }
+  double corner_angle(int h) const;  // at from(h)
+  // How far the surface would move if the edge were flipped; 0 at a boundary.
+  double bulge(int h) const;
+  // A boundary, or a sharp edge between faces that are not just rounding.
+  bool is_curve(int h) const;
+  // Could no flip remove it, whatever the shape of the triangles?
+  bool is_held(int h) const { return bulge(h) > options_.tolerance || is_curve(h); }
+
+  // Flips the edge if that makes the smaller of the smallest angles larger.
+  bool flip(int h);
+  // Moves from(h) onto to(h) if the smallest angle around hardly gets smaller, or stays above `enough`.
+  bool collapse(int h, double enough);
+  // Splits the edge about where `fraction` of it is, at a point that the curve once went through if there is one. Gives the new vertex.
+  int split(int h, double fraction);
+
+  // The mesh as a surface of its own; the place of each of its points goes into `place`, source_face names a face of the input
+  // that is closest to the centroid.
+  TriangleSurface packed(std::vector<SurfacePoint>& place) const;
+
+ private:
+  struct Star;
+  bool gather(int h, Star& star) const;
+  bool stays_on_curve(int h, Star& star) const;
+  double deviation_of_star(const Star& star, int u) const;
+  double distance_to_input(const Vec3& p, int guess) const;
+  Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  Vec3 area_vector(int f) const {
+    return area_vector(points_[mesh_.origin[3 * f]], points_[mesh_.origin[3 * f + 1]], points_[mesh_.origin[3 * f + 2]]);
+  }
+  void add_names();
+
+  GuardOptions options_;
+  double sharp_cosine_;
+  const TriangleSurface& input_;
+  SurfaceDistanceQuery query_;
+  EditMesh mesh_;
+  std::vector<Vec3> points_;
+  std::vector<SurfacePoint> place_;
+  std::vector<double> moved_;              // per face: a bound of its distance to the input
+  std::vector<int> inside_;                // per face: face of the input that it lies in, -1: not in one
+  std::vector<std::vector<Vec3>> passed_;  // per edge name: points of the curve that were taken out of it
+};
+
+}  // namespace hybrid_mesh
