@@ -262,7 +262,8 @@ Plan::Region region_from_json(const PlanEntry& entry) {
     if (r.pattern.kind == RegionPattern::Kind::Drawn) entry.at("layout").refuse("must be \"automatic\", \"cubes\" or \"template\"");
     keys.insert("layout");
     if (r.pattern.kind == RegionPattern::Kind::Cubes) keys.insert("height");
-    if (r.pattern.kind == RegionPattern::Kind::Template) keys.insert({"start", "new_quads"});
+    if (r.pattern.kind == RegionPattern::Kind::Template) keys.insert("new_quads");
+    keys.insert("start");
   } else {
     if (!entry.has("curves")) entry.refuse("has neither \"curves\" nor a \"layout\"");
     keys.insert("curves");
@@ -273,10 +274,13 @@ Plan::Region region_from_json(const PlanEntry& entry) {
   if (r.quads.empty()) entry.refuse("has no quads");
   if (entry.has("curves")) r.pattern.strokes = strokes_from_json(entry.at("curves"));
   if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, limits::most_cubes));
-  if (r.pattern.kind == RegionPattern::Kind::Template) {
-    const std::vector<PlanEntry> start = entry.at("start").list(2), quads = entry.at("new_quads").list();
+  if (entry.has("start") || r.pattern.kind == RegionPattern::Kind::Template) {
+    const std::vector<PlanEntry> start = entry.at("start").list(2);
     r.start_quad = start[0].text();
     r.start_side = start[1].index(4);
+  }
+  if (r.pattern.kind == RegionPattern::Kind::Template) {
+    const std::vector<PlanEntry> quads = entry.at("new_quads").list();
     for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
   }
   if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, limits::most_buffer_rings));

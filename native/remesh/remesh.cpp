@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/remesh.h"
 
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
@@ -102,12 +101,7 @@ void place(Candidate& c, const Placement& placement) {
   h.set_final_positions(c.final_mesh);
 }
 
-}  // namespace
-
-RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      options.threads > 0 ? static_cast<std::size_t>(options.threads) : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
   check_options(options);
   const Progress progress(context);
   std::optional<Plan> plan;
@@ -125,6 +119,14 @@ RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Cont
   progress(1);
   return {std::move(best.hierarchy), std::move(best.final_mesh), std::move(source.repaired),
           std::move(best.plan),      std::move(best.plan_root),  std::move(report)};
+}
+
+}  // namespace
+
+RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
+  // An arena of its own: Blender, in whose process this may run, has threads of its own kind to think of.
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return remesh_in_arena(input, options, context); });
 }
 
 }  // namespace hybrid_mesh

@@ -151,7 +151,7 @@ TEST_F(PatternRegions, WhatDoesNotFitIsRefusedWithItsPlace) {
       {".height", changed(cubes, [](Json& o) { o["height"] = -1; })},
       {".height", changed(cubes, [](Json& o) { o["height"] = "tall"; })},
       {"\"height\"", changed(cubes, [](Json& o) { o["layout"] = "automatic", o["height"] = 2; })},
-      {"\"start\"", changed(turned, [](Json& o) { o["layout"] = "automatic"; })},
+      {"\"new_quads\"", changed(turned, [](Json& o) { o["layout"] = "automatic"; })},
       {"start", changed(turned, [](Json& o) { o.erase("start"); })},
       {".start[1]", changed(turned, [](Json& o) { o["start"][1] = 4; })},
       {"no quad 7.0.0", changed(turned, [](Json& o) { o["start"][0] = "7.0.0"; })},
