@@ -129,8 +129,8 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   options.shortest_edge = sizes.shortest * edge;
   options.collapsible = sizes.collapsible * edge;
   options.tolerance = std::min(sizes.tolerance * edge, sizes.most_tolerance);
-  // Without needles only sizes are seen to.
-  if (needle_share(placed, sizes.needle_angle) < sizes.needles) options.least_angle = options.least_bent_angle = 0;
+  // Without needles only sizes are seen to: nothing moves, and every face lies on one of the repaired surface.
+  if (needle_share(placed, sizes.needle_angle) < sizes.needles) options.least_angle = options.least_bent_angle = options.tolerance = 0;
   WellShaped shaped = make_well_shaped(placed, options, progress);
   WorkingSurface w;
   w.mesh = std::move(shaped.mesh);
