@@ -18,7 +18,6 @@ namespace hybrid_mesh {
 namespace {
 
 using testing::ball;
-using testing::corners_of;
 using testing::cube_plan;
 using testing::expect_changed_in_places;
 using testing::Json;
@@ -115,7 +114,7 @@ TEST_F(PatternRegions, ATemplateIsWhatAnotherRegionWasGiven) {
   const std::vector<Json> operations = {{{"level", 2}, {"quads", {"1.0.2", "1.1.3"}}, {"layout", "cubes"}, {"height", 2}},
                                         {{"level", 2}, {"quads", regions()[3]}, {"layout", "automatic"}},
                                         {{"level", 2}, {"quads", {"1.0.2", "1.1.3"}}, {"layout", "automatic"}}};
-  for (Json operation : operations) {
+  for (const Json& operation : operations) {
     const RemeshResult first = remesh_with(Json::array({operation}));
     const auto pattern = template_of(first.hierarchy, 0);
     ASSERT_TRUE(pattern);
@@ -199,7 +198,9 @@ TEST_F(PatternRegions, WhatDoesNotFitIsRefusedWithItsPlace) {
                                                   o["new_quads"] = {{0, 1, 4, 5}, {1, 2, 3, 6}, {3, 4, 1, 6}};
                                                 })},
   };
-  for (const auto& [words, operation] : mistakes) {
+  for (const auto& mistake : mistakes) {
+    const std::string& words = mistake.first;
+    const Json& operation = mistake.second;  // clang captures no structured bindings
     // Its place among the operations as the plan has them.
     const Json after = {{"level", 3}, {"quads", {"5.0.0.2"}}, {"layout", "cubes"}, {"height", 1}};
     const std::string refusal = refusal_of([&] { remesh_with(Json::array({after, operation})); });
