@@ -70,7 +70,7 @@ def quad_addresses(level, roots, paths, level_of_root):
 def repatch_operation(level, addresses, layout, buffer_rings):
     """The operation that lays out the quads at `addresses` anew.
 
-    layout: of drawn_layout(), automatic_layout(), cubes_layout() or template_layout(); buffer_rings: how many rings of quads around them are smoothed.
+    layout: of drawn_layout(), automatic_layout(), cubes_layout(), rows_layout(), even_layout() or template_layout(); buffer_rings: how many rings of quads around them are smoothed.
     """
     quads = [str(one) for one in addresses]
     if not quads:
@@ -101,6 +101,18 @@ def cubes_layout(height=0):
     """A tower of so many cubes on the region; 0: as many as make its sides square."""
     _whole("height", height, 0, limits().most_cubes)
     return {"layout": "cubes", "height": height}
+
+
+def rows_layout(height=0):
+    """So many rows of quads on a region that is a ring: from one of its rims to the other, or to the surface's boundary; 0: as many as make them square."""
+    _whole("rows", height, 0, limits().most_cubes)
+    return {"layout": "rows", "height": height}
+
+
+def even_layout(quads=0):
+    """Quads of even size for a region of any topology, about so many; 0: as many as it has."""
+    _whole("even quads", quads, 0, limits().most_even_quads)
+    return {"layout": "even", "even_quads": quads}
 
 
 def template_layout(address, side, new_quads):

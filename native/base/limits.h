@@ -33,6 +33,9 @@ inline constexpr int most_threads = 1024;
 // Of a tower.
 inline constexpr int most_cubes = 1000;
 
+// In a region that is laid out anew.
+inline constexpr int most_even_quads = 1000000;
+
 // Around a region that is laid out anew: so many reach around any surface that is worth it.
 inline constexpr int most_buffer_rings = 100;
 

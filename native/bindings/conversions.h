@@ -54,6 +54,8 @@ auto without_gil(Function&& function) -> decltype(function()) {
     return function();
   } catch (const Error&) {
     throw;
+  } catch (const NoMap& none) {
+    throw Error(ErrorCode::Unsupported, none.what());
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

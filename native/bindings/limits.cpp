@@ -20,6 +20,7 @@ py::dict all_limits() {
   all["most_seed"] = limits::most_seed;
   all["most_threads"] = limits::most_threads;
   all["most_cubes"] = limits::most_cubes;
+  all["most_even_quads"] = limits::most_even_quads;
   all["most_buffer_rings"] = limits::most_buffer_rings;
   all["most_snap"] = limits::most_snap;
   return all;

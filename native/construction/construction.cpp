@@ -123,7 +123,8 @@ void Construction::apply(std::vector<LayoutScript::Edit> round) {
   for (LayoutScript::Edit& of : round) {
     of.quads.clear();
     for (const int q : of.edit.patches) of.quads.push_back(to_string(quads_.address(q)));
-    of.start_quad = to_string(quads_.address(of.edit.start.patch));
+    of.start_quads.clear();
+    for (const PatchSide& start : of.edit.starts) of.start_quads.push_back(to_string(quads_.address(start.patch)));
     edits.push_back(of.edit);
   }
   for (std::size_t i = 0; i < edits.size(); ++i) {

@@ -28,7 +28,7 @@ struct LevelState {
 // The next level, before any operation.
 LevelState quadrisected(const LevelState& state);
 
-// The maps of some quads. Throws Error{Internal} where rounding would fold one.
+// The maps of some quads. Throws NoMap where rounding would fold one.
 std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads);
 
 // The quads of `part` alone, numbered in that order; nodes where the part merely touches itself are one.

@@ -193,7 +193,7 @@ bool CollapseHierarchy::unfolds_around(int v, int rings, int sweeps) {
 void CollapseHierarchy::untangle(int v) {
   for (int rings = placement_.rings; rings <= placement_.most_rings; ++rings)
     if (unfolds_around(v, rings, rings < placement_.patient_rings ? placement_.patience : placement_.long_patience)) return;
-  throw Error(ErrorCode::Internal, "the map could not be carried to a finer mesh");
+  throw NoMap("the map could not be carried to a finer mesh");
 }
 
 }  // namespace hybrid_mesh

@@ -44,7 +44,7 @@ class CollapseHierarchy {
   void collapse(int target);
   // Takes over collapses that were made elsewhere, the last one last.
   void resume(const std::vector<int>& log);
-  // Undoes all collapses. Throws Error{Internal} where a vertex finds no place.
+  // Undoes all collapses. Throws NoMap where a vertex finds no place.
   void refine(const Progress& progress);
 
  private:

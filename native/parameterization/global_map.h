@@ -27,7 +27,7 @@ struct GlobalMapReport {
 GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
 
 // Merges all points of `surface` that were inserted by cutting, and moves cones from them to a neighbour: the charts' triangles are those of the
-// surface that was cut. Returns the point of that surface for each vertex that is alive. Throws Error{Internal} where the map refuses.
+// surface that was cut. Returns the point of that surface for each vertex that is alive. Throws NoMap where the map refuses.
 std::vector<int> uncut_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
 
 // Undoes the half-edge collapses in `log`, last one first, and smooths the map on the way.

@@ -25,7 +25,7 @@ std::vector<double> fractions_seen_from(const PatchedSurface& surface, const std
       fractions[at - points.begin()] = side < 2 ? 1 - along : along;
     }
   for (std::size_t k = 1; k < fractions.size(); ++k)
-    if (!(fractions[k] > fractions[k - 1])) throw Error(ErrorCode::Internal, "a patch's map does not follow its side");
+    if (!(fractions[k] > fractions[k - 1])) throw NoMap("a patch's map does not follow its side");
   return fractions;
 }
 
@@ -67,7 +67,7 @@ void map_patches(PatchedSurface& surface, const std::vector<int>& patches, std::
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const int q = patches[i];
     if (!convex_map(faces[q], sides_of(q), square, corners))
-      throw Error(ErrorCode::Internal, "the map of base quad " + std::to_string(q) + " degenerates in double precision");
+      throw NoMap("the map of base quad " + std::to_string(q) + " degenerates in double precision");
     progress((i + 1.0) / patches.size());
   }
 }

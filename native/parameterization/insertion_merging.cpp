@@ -155,7 +155,7 @@ void InsertionMerging::settle(int cone) {
     c_.uv[w] = c_.corner[seen_from](place);
   }
   const int next = evict_cone(c_, density_, cone, original_);
-  if (next < 0) throw Error(ErrorCode::Internal, "an irregular node of the base cannot be moved to a vertex");
+  if (next < 0) throw NoMap("an irregular node of the base cannot be moved to a vertex");
 }
 
 // A corner of the base on the boundary that is inside an edge of the surface goes to one of the edge's ends, the nearer one if the map unfolds
@@ -168,7 +168,7 @@ void InsertionMerging::settle_corner(int corner) {
     while (at >= 0 && is_inserted(at)) at = corners_.move(at, forward);
     if (at >= 0) return;
   }
-  throw Error(ErrorCode::Internal, "a corner of the base on the boundary cannot be moved to a vertex");
+  throw NoMap("a corner of the base on the boundary cannot be moved to a vertex");
 }
 
 // Merges what is left whatever becomes of the map, and unfolds it there. What does not unfold is tried again when others have gone; cones and
@@ -183,7 +183,7 @@ void InsertionMerging::merge_by_force(const Progress& progress) {
     for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
       if (c_.mesh.vertex_alive(v) && is_inserted(v) && !unfolds_when_merged(v, pass)) {
         left.push_back(v);
-        if (stars_.relaxed_folded() > most) throw Error(ErrorCode::Internal, kCutStays);
+        if (stars_.relaxed_folded() > most) throw NoMap(kCutStays);
       }
     if (left.empty()) return;
     for (const int v : left) {
@@ -199,7 +199,7 @@ void InsertionMerging::merge_by_force(const Progress& progress) {
     }
     merge(1e-4, -1);
   }
-  throw Error(ErrorCode::Internal, kCutStays);
+  throw NoMap(kCutStays);
 }
 
 bool InsertionMerging::unfolds_when_merged(int v, int pass) {

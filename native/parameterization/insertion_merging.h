@@ -17,7 +17,7 @@ class InsertionMerging {
 
   // Merges the inserted points that the map allows to go: no triangle's determinant or 3D shape falls below the bounds.
   void merge(double least_determinant, double least_shape = 1e-6);
-  // Merges every inserted point; returns the surface's point for each vertex that is alive, -1 for others. Throws Error{Internal} where the map
+  // Merges every inserted point; returns the surface's point for each vertex that is alive, -1 for others. Throws NoMap where the map
   // refuses.
   std::vector<int> merge_all(const Progress& progress);
 

@@ -113,7 +113,7 @@ class MapCutting {
       out.source_face.push_back(map_.source_face[t.source]);
       out.source.push_back(source);
     }
-    if (const char* defect = find_map_defect(out); *defect) throw Error(ErrorCode::Internal, std::string("a part of a map: ") + defect);
+    if (const char* defect = find_map_defect(out); *defect) throw NoMap(std::string("a part of a map: ") + defect);
     return out;
   }
 

@@ -127,7 +127,7 @@ class Extraction {
     }
     for (int f = 0; f < static_cast<int>(c_.mesh.alive.size()); ++f)
       if (c_.mesh.alive[f] && orientation(grid_at(3 * f), grid_at(3 * f + 1), grid_at(3 * f + 2)) <= 0)
-        throw Error(ErrorCode::Internal, "a triangle of the map vanishes when rounded");
+        throw NoMap("a triangle of the map vanishes when rounded");
   }
   bool star_unfolded(int v) const {
     int h = c_.mesh.out[v];
@@ -233,8 +233,7 @@ class Extraction {
       const Vec2 a = m.uv[t[1]] - m.uv[t[0]], b = m.uv[t[2]] - m.uv[t[0]];
       area += 0.5 * (a.x() * b.y() - a.y() * b.x());
     }
-    if (!(std::abs(area - 1) < 1e-6))
-      throw Error(ErrorCode::Internal, "the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
+    if (!(std::abs(area - 1) < 1e-6)) throw NoMap("the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
     return std::move(growing.map);
   }
 
@@ -272,7 +271,7 @@ class Extraction {
         });
       }
     }
-    if (done != c_.mesh.face_count) throw Error(ErrorCode::Internal, "the map leaves faces uncovered");
+    if (done != c_.mesh.face_count) throw NoMap("the map leaves faces uncovered");
   }
 
   // Notes all parts of a face, from a patch that it overlaps on; calls `reach` for each of its edges with a patch that holds a part of it.
@@ -288,7 +287,7 @@ class Extraction {
       const Visit visit = visits[i];
       const std::vector<Piece> polygon = clip(corners_in(f, visit.to_patch));
       if (polygon.empty()) {
-        if (i == 0) throw Error(ErrorCode::Internal, "the map's faces do not follow its patches");
+        if (i == 0) throw NoMap("the map's faces do not follow its patches");
         continue;
       }
       parts_[visit.patch].push_back({f, visit.to_patch});
@@ -312,7 +311,7 @@ class Extraction {
         const bool known =
             std::any_of(visits.begin(), visits.end(), [&](const Visit& v) { return v.patch == next.patch && v.to_patch == next.to_patch; });
         if (!known) visits.push_back(next);
-        if (visits.size() > 64) throw Error(ErrorCode::Internal, "a face of the map spans too many base quads");
+        if (visits.size() > 64) throw NoMap("a face of the map spans too many base quads");
       }
     }
   }
@@ -438,16 +437,16 @@ class Extraction {
       int start = -1;
       for (const auto& [from, to] : next)
         if (!has_previous.count(from)) {
-          if (start >= 0) throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " is not covered");
+          if (start >= 0) throw NoMap("a side of base quad " + std::to_string(q) + " is not covered");
           start = from;
         }
-      if (start < 0) throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " is not covered");
+      if (start < 0) throw NoMap("a side of base quad " + std::to_string(q) + " is not covered");
       std::vector<int> chain{start};
       while (next.count(chain.back())) chain.push_back(next[chain.back()]);
       const int axis = side % 2;
       const double sign = side < 2 ? 1 : -1;
       if (map.uv[chain.front()] != square[side] || map.uv[chain.back()] != square[(side + 1) % 4])
-        throw Error(ErrorCode::Internal, "a side of base quad " + std::to_string(q) + " does not end at its corners");
+        throw NoMap("a side of base quad " + std::to_string(q) + " does not end at its corners");
       double last = map.uv[chain.front()][axis];
       for (std::size_t k = 1; k + 1 < chain.size(); ++k) {
         double& x = map.uv[chain[k]][axis];

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,10 +26,10 @@ constexpr double kRoomyBase = 280;
 // The last triangles of a decimation are too few to choose quads from: below this size the base's is taken for the least.
 constexpr double kSmallBase = 60;
 
-// A cube for a ball, and four quads around a hole, with which its boundary has no corners; around a handle it takes some forty quads until a map to
-// them holds.
+// A cube for a ball, four quads around a hole, with which its boundary has no corners, and a dozen around a handle: with fewer a map to them holds on
+// few surfaces.
 int least_quads(const TopologySummary& topology) {
-  return static_cast<int>(std::max(6.0 * topology.components, 39.0 * topology.genus) + 4.0 * topology.boundary_loops);
+  return static_cast<int>(std::max(6.0 * topology.components, 12.0 * topology.genus) + 4.0 * topology.boundary_loops);
 }
 
 double area_of(const TriangleSurface& surface) {
@@ -43,8 +44,7 @@ void set_maps(Construction& made, LevelMap& level, const RemeshTask& task, const
   std::vector<PatchMap> maps = extract_patch_maps(level.charts, level.layout, working.mesh.faces, progress);
   for (int q = 0; q < level.layout.patch_count(); ++q) {
     const char* defect = find_map_defect(maps[q]);
-    if (*defect)
-      throw Error(ErrorCode::Internal, "the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
+    if (*defect) throw NoMap("the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
     working.to_repaired(maps[q], task.source.repaired);
     made.set_map(q, std::move(maps[q]));
   }
@@ -82,10 +82,11 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
   WorkingSurface working;
   const BaseDomain base = make_base(task, origin, working);
-  BaseMap map =
+  Found<BaseMap> map =
       map_to_base(working.mesh, base, layout_search_options(options, budget, task.source.topology, base, request), task.progress.part(0.15, 0.5));
-  origin.level = map.script.levels.front();
-  return assemble_candidate(task, working, std::move(map), origin, [&](Construction& made) { return grow_skin(made, task, budget, base); });
+  if (!map) throw NoMap(map.reason);
+  origin.level = map->script.levels.front();
+  return assemble_candidate(task, working, std::move(*map), origin, [&](Construction& made) { return grow_skin(made, task, budget, base); });
 }
 
 // The vertices of the coarsest uniform mesh that the candidate's hierarchy has, or of one with so many levels.
@@ -102,10 +103,12 @@ std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool anothe
     // Nearby decisions differ.
     r.seed = options.seed + 1000003ull * static_cast<std::uint64_t>(k + (another ? kRequests : 0));
     if (options.base != BaseSize::Minimal) continue;
-    // The same size once more on a finer surface, then larger bases, which are easier to map; at last without operations.
-    if (k == 1) r.vertices_a_quad = 60;
-    r.size_factor = k < 2 ? 1 : 1 << (2 * std::min(k - 1, 3));
-    r.operations = k < 4;
+    // The same size a few times, the cheapest way first, then larger bases, which are easier to map; at last without operations.
+    constexpr std::array<int, kRequests> factor{1, 1, 1, 1, 2, 4, 16, 64};
+    r.size_factor = factor[k];
+    r.base_edits = k == 2 || k == 3;
+    if (k == 3) r.vertices_a_quad = 60;
+    r.operations = k < 7;
   }
   return requests;
 }
@@ -129,33 +132,33 @@ BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, Working
   return base;
 }
 
-Candidate search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests) {
+CandidateSearch search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests) {
   const RemeshOptions& options = task.options;
   Budget budget = plan_budget(options, task.source, target);
   std::string failure;
   std::int64_t least = -1;
   for (const BaseRequest& request : requests) {
-    try {
-      Candidate c = make_candidate(task, budget, request);
-      c.levels = budget.levels;
-      // With a base of any size the number of levels is what makes a mesh of the size asked for.
-      if (options.base == BaseSize::Minimal && options.refinement == Refinement::Uniform && options.levels < 0 && options.error == 0)
-        c.levels = levels_within(budget.vertices, c.finest, c.finest_quads, task.source.topology.euler, c.finest_boundary_sides);
-      const std::int64_t needed = vertices_needed(c, task.source, c.levels);
-      const bool bound = options.vertices > 0 && options.refinement == Refinement::Uniform;
-      if (!bound || needed <= options.vertices) return c;
-      least = least < 0 ? needed : std::min(least, needed);
-      if (c.levels == 0 || options.levels >= 0) break;
-      budget = with_levels(budget, c.levels - 1, options, task.source);
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal) throw;
-      failure = e.what();
+    Found<Candidate> c = found([&] { return make_candidate(task, budget, request); });
+    if (!c) {
+      failure = c.reason;
+      continue;
     }
+    c->levels = budget.levels;
+    // With a base of any size the number of levels is what makes a mesh of the size asked for.
+    if (options.base == BaseSize::Minimal && options.refinement == Refinement::Uniform && options.levels < 0 && options.error == 0)
+      c->levels = levels_within(budget.vertices, c->finest, c->finest_quads, task.source.topology.euler, c->finest_boundary_sides);
+    const std::int64_t needed = vertices_needed(*c, task.source, c->levels);
+    const bool bound = options.vertices > 0 && options.refinement == Refinement::Uniform;
+    if (!bound || needed <= options.vertices) return {std::move(c)};
+    least = least < 0 ? needed : std::min(least, needed);
+    if (c->levels == 0 || options.levels >= 0) break;
+    budget = with_levels(budget, c->levels - 1, options, task.source);
   }
   if (least >= 0)
-    throw Error(ErrorCode::InvalidInput,
-                "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(options.vertices) + " allowed");
-  throw Error(ErrorCode::Internal, failure);
+    failure = "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(options.vertices) + " allowed";
+  else
+    failure = "no map of the surface to a base domain is found: " + failure;
+  return {{std::nullopt, failure}, std::max<std::int64_t>(0, least)};
 }
 
 Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/found.h"
 #include "construction/construction.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "layout/search/base_map.h"
@@ -40,6 +41,7 @@ struct Candidate {
 struct BaseRequest {
   std::uint64_t seed = 0;      // decides near-ties
   int size_factor = 1;         // of a minimal base: more quads where a map to fewer cannot be had
+  bool base_edits = true;      // a minimal base's own quads are improved as well: slow where there are few, but a map to them holds more often
   bool operations = true;      // with a minimal base: irregular operations on a finer level
   double vertices_a_quad = 0;  // of the surface on which these are found; 0: as is usual
 };
@@ -47,8 +49,11 @@ struct BaseRequest {
 std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool another);
 
 // The first of the requests that gives a map, and, with a bound on the vertices, a uniform mesh within it; the number of levels falls until it does.
-// Throws Error{InvalidInput} where the surface needs more vertices than allowed, Error{Internal} if there is no map.
-Candidate search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests);
+struct CandidateSearch {
+  Found<Candidate> candidate;
+  std::int64_t too_many = 0;  // vertices that are needed at least, where only meshes of more than allowed were found
+};
+CandidateSearch search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests);
 
 // What a plan says: made again as it was on the surface that the plan was made on, else laid out on this one. Throws Error.
 Candidate planned_candidate(const RemeshTask& task, const Plan& plan);
@@ -56,8 +61,8 @@ Candidate planned_candidate(const RemeshTask& task, const Plan& plan);
 // Does further irregular operations and returns them as a plan has them.
 using Operations = std::function<std::vector<Plan::Region>(Construction& made)>;
 
-// A map to a base and what was decided, as a candidate. `working`: the surface that the map is of. Throws Error{Internal} where the map does not
-// hold, and what `operations` throws.
+// A map to a base and what was decided, as a candidate. `working`: the surface that the map is of. Throws NoMap where the map does not hold, and what
+// `operations` throws.
 Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
                              const Operations& operations);
 

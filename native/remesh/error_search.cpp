@@ -108,14 +108,9 @@ class ErrorSearch {
   // promises, the base is too coarse for the shape and has lost a tip: then the same on a base of four times as many quads, from now on.
   std::optional<Candidate> try_target(Attempt& made) {
     for (;;) {
-      std::optional<Candidate> c;
-      try {
-        c = search_candidate(task_, target_, base_requests(options(), false));
-      } catch (const Error& e) {
-        if (e.code() == ErrorCode::Cancelled) throw;
-        made = {};
-        return std::nullopt;
-      }
+      std::optional<Candidate> c = search_candidate(task_, target_, base_requests(options(), false)).candidate.value;
+      made = {};
+      if (!c) return c;
       fit_uniform(task_, *c, c->levels);
       made = measured(*c);
       if (made.l2 < 1.3 * options().error || options().levels >= 0 || c->levels == 0 || target_.levels_less == 1) return c;

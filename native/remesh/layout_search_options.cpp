@@ -11,6 +11,7 @@ namespace {
 // few to choose from. Two levels with operations (towers on one of some hundred quads, even quads on the next) were tried: quads are inserted twice,
 // and neither the distances nor the angles are better.
 constexpr double kLeastQuads = 60, kEnoughQuads = 250;
+constexpr int kFewQuads = 20;
 // A level that is passed through: quadrisected, on so many vertices a quad.
 LevelSearchOptions plain_level(double quads, double vertices) {
   LevelSearchOptions level;
@@ -31,22 +32,22 @@ double quads_for_budget(const Budget& budget, const TopologySummary& topology, d
 
 void search_finer_levels(LayoutSearchOptions& search, const RemeshOptions& options, const Budget& budget, const TopologySummary& topology,
                          const BaseDomain& base, const BaseRequest& request) {
-  // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
   LevelSearchOptions& first = search.levels.front();
-  if (base.quads() < 20) {
-    first.rounds = 0;
-    first.map.vertices_a_quad = 1000.0 / base.quads();
-  }
   first.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, first.vertices);
-  // Only disks can be laid out anew, and where there are handles disks are a small part.
-  if (options.semi_regular || !request.operations || topology.genus > topology.components) return;
+  const bool finer = !options.semi_regular && request.operations && base.quads() < kEnoughQuads && options.levels != 0;
+  // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
+  if ((finer && !request.base_edits) || base.quads() < kFewQuads) {
+    first.rounds = 0;
+    first.map.vertices_a_quad = std::max(first.map.vertices_a_quad, 1000.0 / base.quads());
+  }
+  if (!finer) return;
   double quads = base.quads(), sides = base.boundary_sides();
   while (quads < kEnoughQuads && static_cast<int>(search.levels.size()) - 1 != options.levels) {
     quads *= 4;
     sides *= 2;
     search.levels.push_back(plain_level(quads, request.vertices_a_quad > 0 ? request.vertices_a_quad : sides > 0 ? 30 : 15));
   }
-  if (quads < kLeastQuads || search.levels.size() == 1) return;
+  if (quads < kLeastQuads) return;
   LevelSearchOptions& last = search.levels.back();
   // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
   const double size = quads_for_budget(budget, topology, quads, sides);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "layout/base/base_domain.h"
 #include "layout/drawn/boundary_tower.h"
@@ -34,8 +35,8 @@ struct Plan {
     int level = 0;
     std::vector<std::string> quads;  // addresses
     RegionPattern pattern;           // its strokes in the input's space
-    std::string start_quad;          // the address of the quad whose side `start_side` begins at corner 0; empty: any
-    int start_side = 0;
+    // The addresses of quads, and their sides that begin at the first corners of the region's first rims; see make_region(). Empty: any.
+    std::vector<std::pair<std::string, int>> starts;
     int buffer_rings = 1;
   };
   LayoutOutline base;                  // in the input's space

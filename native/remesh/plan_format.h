@@ -23,8 +23,11 @@ inline constexpr const char* kFormat = "hybrid-mesh plan";
 inline constexpr int kVersion = 1;
 inline constexpr const char* kAutomatic = "automatic";
 // Words for the ways in which a region is laid out without curves.
-inline constexpr std::array<std::pair<RegionPattern::Kind, const char*>, 3> kRegionLayouts{
-    {{RegionPattern::Kind::Automatic, kAutomatic}, {RegionPattern::Kind::Cubes, "cubes"}, {RegionPattern::Kind::Template, "template"}}};
+inline constexpr std::array<std::pair<RegionPattern::Kind, const char*>, 5> kRegionLayouts{{{RegionPattern::Kind::Automatic, kAutomatic},
+                                                                                            {RegionPattern::Kind::Cubes, "cubes"},
+                                                                                            {RegionPattern::Kind::Rows, "rows"},
+                                                                                            {RegionPattern::Kind::Even, "even"},
+                                                                                            {RegionPattern::Kind::Template, "template"}}};
 }  // namespace plan_format
 
 // A value of the plan and its place in it, for messages.

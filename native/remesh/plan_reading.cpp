@@ -78,6 +78,17 @@ std::array<int, 4> new_quad(const PlanEntry& entry, std::int64_t most) {
   return quad;
 }
 
+// Where the numbering of a region's corners starts: one side for a region with one rim, or a list of them.
+std::vector<PlanEntry> starts_of(const PlanEntry& entry) {
+  if (entry.has("starts")) {
+    if (entry.has("start")) entry.refuse("has a \"start\" and \"starts\": one of them is enough");
+    return entry.at("starts").list();
+  }
+  std::vector<PlanEntry> starts;
+  if (entry.has("start")) starts.push_back(entry.at("start"));
+  return starts;
+}
+
 LayoutEdit layout_edit_from_json(const PlanEntry& entry, const AddressedGraph& layout) {
   const auto quad = [&](const PlanEntry& e) {
     const int q = layout.find(e.text());
@@ -86,26 +97,25 @@ LayoutEdit layout_edit_from_json(const PlanEntry& entry, const AddressedGraph& l
   };
   std::vector<int> patches;
   for (const PlanEntry& e : entry.at("quads").list()) patches.push_back(quad(e));
-  PatchSide start;
-  if (entry.has("start")) {
-    const std::vector<PlanEntry> s = entry.at("start").list(2);
-    start = {quad(s[0]), s[1].index(4)};
-    const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
-    if (!inside(start.patch) || inside(layout.graph().neighbours[start.patch][start.side].patch))
-      entry.at("start").refuse("is no side of the quads' boundary");
+  std::vector<PatchSide> starts;
+  const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
+  for (const PlanEntry& e : starts_of(entry)) {
+    const std::vector<PlanEntry> s = e.list(2);
+    const PatchSide start{quad(s[0]), s[1].index(4)};
+    if (!inside(start.patch) || inside(layout.graph().neighbours[start.patch][start.side].patch)) e.refuse("is no side of the quads' boundary");
+    starts.push_back(start);
   }
-  const std::optional<PatchRegion> region = make_region(layout.graph(), patches, start);
-  if (!region) entry.refuse("has quads that are no disk, or whose boundary does not have its start");
+  const std::optional<PatchRegion> region = make_region(layout.graph(), patches, starts, starts.empty() ? FreeLoops::Rims : FreeLoops::Open);
+  if (!region) entry.refuse("has quads whose boundary touches itself or is missing, or two starts on one part of it");
   const std::string kind = entry.at("kind").text();
+  if (kind == "add_cubes" && !region->is_disk()) entry.at("kind").refuse("is for a disk of quads alone");
   if (kind == "add_cubes") return tower_edit(layout.graph(), *region, static_cast<int>(entry.at("height").integer(1, limits::most_cubes)));
   if (kind != "repatch") entry.at("kind").refuse("must be \"repatch\" or \"add_cubes\"");
-  LayoutEdit edit;
-  edit.patches = region->patches;
-  edit.start = region->boundary[0];
+  LayoutEdit edit = edit_of(*region);
   const std::vector<PlanEntry> quads = entry.at("new_quads").list();
   const int corners = static_cast<int>(region->corners.size());
   for (const PlanEntry& e : quads) edit.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size()) + corners));
-  if (const std::string defect = find_filling_defect(edit.quads, corners); !defect.empty()) entry.at("new_quads").refuse(defect);
+  if (const std::string defect = find_filling_defect(edit.quads, *region); !defect.empty()) entry.at("new_quads").refuse(defect);
   for (const auto& q : edit.quads) edit.inner_nodes = std::max(edit.inner_nodes, *std::max_element(q.begin(), q.end()) + 1 - corners);
   return edit;
 }
@@ -114,7 +124,7 @@ LayoutScript::Edit edit_from_json(const PlanEntry& entry, const AddressedGraph& 
   LayoutScript::Edit of;
   of.edit = layout_edit_from_json(entry, layout);
   for (const int q : of.edit.patches) of.quads.push_back(to_string(layout.address(q)));
-  of.start_quad = to_string(layout.address(of.edit.start.patch));
+  for (const PatchSide& start : of.edit.starts) of.start_quads.push_back(to_string(layout.address(start.patch)));
   of.even = entry.has("even_quads");
   if (!of.even) return of;
   of.even_quads = entry.at("even_quads").number(0);
@@ -139,8 +149,10 @@ LayoutEdit raw_edit(const PlanEntry& entry) {
   constexpr std::int64_t most = std::numeric_limits<int>::max();
   LayoutEdit edit;
   for (const PlanEntry& e : entry.at("patches").list()) edit.patches.push_back(static_cast<int>(e.integer(0, most)));
-  const std::vector<PlanEntry> start = entry.at("start").list(2);
-  edit.start = {static_cast<int>(start[0].integer(0, most)), start[1].index(4)};
+  for (const PlanEntry& e : starts_of(entry)) {
+    const std::vector<PlanEntry> start = e.list(2);
+    edit.starts.push_back({static_cast<int>(start[0].integer(0, most)), start[1].index(4)});
+  }
   for (const PlanEntry& e : entry.at("quads").list()) {
     const std::vector<PlanEntry> nodes = e.list(4);
     std::array<int, 4> q;
@@ -214,7 +226,7 @@ std::vector<LayoutScript::Level> levels_from_json(const PlanEntry& entry, const 
     std::int64_t now = -1;
     std::vector<LayoutEdit> round;
     for (const PlanEntry& op : e.at("operations").list()) {
-      op.only({"kind", "quads", "start", "height", "new_quads", "round", "even_quads", "nodes", "curves"});
+      op.only({"kind", "quads", "start", "starts", "height", "new_quads", "round", "even_quads", "nodes", "curves"});
       const std::int64_t r = op.has("round") ? op.at("round").integer(std::max<std::int64_t>(0, now), kMostRounds) : now + 1;
       if (r != now) apply_round(layout, std::exchange(round, {}));
       LayoutScript::Edit edit = edit_from_json(op, layout);
@@ -259,11 +271,14 @@ Plan::Region region_from_json(const PlanEntry& entry) {
     const std::string word = entry.at("layout").text();
     for (const auto& [kind, name] : kRegionLayouts)
       if (word == name) r.pattern.kind = kind;
-    if (r.pattern.kind == RegionPattern::Kind::Drawn) entry.at("layout").refuse("must be \"automatic\", \"cubes\" or \"template\"");
+    if (r.pattern.kind == RegionPattern::Kind::Drawn)
+      entry.at("layout").refuse("must be \"automatic\", \"cubes\", \"rows\", \"even\" or \"template\"");
     keys.insert("layout");
-    if (r.pattern.kind == RegionPattern::Kind::Cubes) keys.insert("height");
+    if (r.pattern.kind == RegionPattern::Kind::Cubes || r.pattern.kind == RegionPattern::Kind::Rows) keys.insert("height");
+    if (r.pattern.kind == RegionPattern::Kind::Even) keys.insert("even_quads");
     if (r.pattern.kind == RegionPattern::Kind::Template) keys.insert("new_quads");
     keys.insert("start");
+    keys.insert("starts");
   } else {
     if (!entry.has("curves")) entry.refuse("has neither \"curves\" nor a \"layout\"");
     keys.insert("curves");
@@ -274,11 +289,12 @@ Plan::Region region_from_json(const PlanEntry& entry) {
   if (r.quads.empty()) entry.refuse("has no quads");
   if (entry.has("curves")) r.pattern.strokes = strokes_from_json(entry.at("curves"));
   if (entry.has("height")) r.pattern.height = static_cast<int>(entry.at("height").integer(0, limits::most_cubes));
-  if (entry.has("start") || r.pattern.kind == RegionPattern::Kind::Template) {
-    const std::vector<PlanEntry> start = entry.at("start").list(2);
-    r.start_quad = start[0].text();
-    r.start_side = start[1].index(4);
+  if (entry.has("even_quads")) r.pattern.even_quads = static_cast<int>(entry.at("even_quads").integer(0, limits::most_even_quads));
+  for (const PlanEntry& e : starts_of(entry)) {
+    const std::vector<PlanEntry> start = e.list(2);
+    r.starts.push_back({start[0].text(), start[1].index(4)});
   }
+  if (r.pattern.kind == RegionPattern::Kind::Template && r.starts.empty()) entry.at("start");
   if (r.pattern.kind == RegionPattern::Kind::Template) {
     const std::vector<PlanEntry> quads = entry.at("new_quads").list();
     for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
@@ -309,14 +325,7 @@ Plan plan_from_json(const std::string& text) {
     plan.base = base_from_json(base);
     if (base.has("origin")) plan.origin = origin_from_json(base.at("origin"));
   }
-  if (top.has("levels") && !plan.tower) {
-    try {
-      plan.levels = levels_from_json(top.at("levels"), plan.base);
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal) throw;
-      throw Error(ErrorCode::InvalidInput, std::string("the plan's operations do not fit its base: ") + e.what());
-    }
-  }
+  if (top.has("levels") && !plan.tower) plan.levels = levels_from_json(top.at("levels"), plan.base);
   if (top.has("operations"))
     for (const PlanEntry& e : top.at("operations").list()) plan.regions.push_back(region_from_json(e));
   return plan;

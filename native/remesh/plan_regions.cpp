@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/found.h"
 #include "layout/operations/region_repatch.h"
 
 namespace hybrid_mesh {
@@ -24,13 +25,16 @@ class RegionRepatcher {
   void operator()(const Plan::Region& region, std::size_t number) {
     const std::string place = "the plan's operations[" + std::to_string(number) + "]: ";
     try {
-      repatch(region);
+      const auto done = found([&] {
+        repatch(region);
+        return true;
+      });
+      if (!done) throw Error(ErrorCode::Unsupported, place + "no map to its new quads is found: " + done.reason);
     } catch (LayoutError& e) {
       for (LayoutProblem& p : e.problems)
         for (Vec3& w : p.where) w = placement_.from_unit(w);
       throw;
     } catch (const Error& e) {
-      if (e.code() == ErrorCode::Internal) throw Error(ErrorCode::Unsupported, place + "no map to its new quads is found: " + e.what());
       if (e.code() == ErrorCode::InvalidInput) throw Error(ErrorCode::InvalidInput, place + e.what());
       throw;
     }
@@ -69,8 +73,13 @@ RegionRepatch resolved(const Plan::Region& region, const AddressedGraph& level) 
     return q;
   };
   RegionRepatch repatch;
-  for (const std::string& address : region.quads) repatch.patches.push_back(find(address));
-  if (!region.start_quad.empty()) repatch.start = {find(region.start_quad), region.start_side};
+  for (const std::string& address : region.quads) {
+    const int q = find(address);
+    if (std::find(repatch.patches.begin(), repatch.patches.end(), q) != repatch.patches.end())
+      throw Error(ErrorCode::InvalidInput, "it has quad " + address + " twice");
+    repatch.patches.push_back(q);
+  }
+  for (const auto& [quad, side] : region.starts) repatch.starts.push_back({find(quad), side});
   repatch.pattern = region.pattern;
   repatch.buffer_rings = region.buffer_rings;
   return repatch;

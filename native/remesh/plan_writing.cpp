@@ -48,14 +48,27 @@ Json base_to_json(const Plan& plan) {
   return {{"nodes", nodes_to_json(base)}, {"quads", base.quads}, {"neighbours", std::move(neighbours)}, {"curves", curves_to_json(base)}};
 }
 
+// Quads, by number or address, and their sides. A disk has one rim, and the plan one "start".
+template <class Quad>
+void put_starts(Json& out, const std::vector<std::pair<Quad, int>>& starts) {
+  if (starts.size() == 1)
+    out["start"] = {starts[0].first, starts[0].second};
+  else
+    for (const auto& [quad, side] : starts) out["starts"].push_back({quad, side});
+}
+
 // Edits of the base level: all are named by numbers in the base domain as it was first, which the plan does not hold.
 Json raw_edit(const LayoutEdit& edit) {
-  return {{"patches", edit.patches},
-          {"start", {edit.start.patch, edit.start.side}},
-          {"quads", edit.quads},
-          {"rings", edit.rings},
-          {"inner_nodes", edit.inner_nodes}};
+  Json out{{"patches", edit.patches}};
+  std::vector<std::pair<int, int>> starts;
+  for (const PatchSide& s : edit.starts) starts.push_back({s.patch, s.side});
+  put_starts(out, starts);
+  out["quads"] = edit.quads;
+  out["rings"] = edit.rings;
+  out["inner_nodes"] = edit.inner_nodes;
+  return out;
 }
+
 Json origin_to_json(const Plan::Origin& origin) {
   if (origin.tower) {
     Json out = tower_to_json(*origin.tower);
@@ -79,7 +92,10 @@ Json origin_to_json(const Plan::Origin& origin) {
 const char* kind_of(const LayoutEdit& edit) { return edit.rings > 0 ? "add_cubes" : "repatch"; }
 
 Json edit_to_json(const LayoutScript::Edit& of) {
-  Json out{{"kind", kind_of(of.edit)}, {"quads", of.quads}, {"start", {of.start_quad, of.edit.start.side}}};
+  Json out{{"kind", kind_of(of.edit)}, {"quads", of.quads}};
+  std::vector<std::pair<std::string, int>> starts;
+  for (std::size_t k = 0; k < of.start_quads.size(); ++k) starts.push_back({of.start_quads[k], of.edit.starts[k].side});
+  put_starts(out, starts);
   if (of.edit.rings > 0)
     out["height"] = of.edit.rings;
   else
@@ -122,7 +138,8 @@ Json regions_to_json(const Plan& plan) {
     for (const auto& [kind, name] : kRegionLayouts)
       if (r.pattern.kind == kind) region["layout"] = name;
     if (r.pattern.height > 0) region["height"] = r.pattern.height;
-    if (!r.start_quad.empty()) region["start"] = {r.start_quad, r.start_side};
+    if (r.pattern.even_quads > 0) region["even_quads"] = r.pattern.even_quads;
+    put_starts(region, r.starts);
     if (r.pattern.kind == RegionPattern::Kind::Template) region["new_quads"] = r.pattern.quads;
     region["buffer_rings"] = r.buffer_rings;
     out.push_back(std::move(region));

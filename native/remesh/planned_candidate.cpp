@@ -28,54 +28,54 @@ Operations operations_of(const RemeshTask& task, const Plan& plan) {
   };
 }
 
-BaseMap map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, WorkingSurface& working) {
+Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, WorkingSurface& working) {
   const Placement& placement = task.source.placement;
   task.progress.stage("base domain");
   task.watch.start("base");
   working = make_working_surface(task.source.repaired, placement, kFacesAQuad * (4 * std::max(kLikelyCubes, tower.cubes) + 1),
                                  task.progress.part(0.05, 0.05));
   for (Vec3& p : tower.nodes) p = placement.to_unit(p);
-  PatchedSurface base = grow_boundary_tower(working.mesh, tower, task.progress.part(0.05, 0.2));
+  Found<PatchedSurface> base = found([&] { return grow_boundary_tower(working.mesh, tower, task.progress.part(0.05, 0.2)); });
+  if (!base) return {std::nullopt, base.reason};
   task.progress.stage("map");
   task.watch.start("map");
-  return map_to_base(working.mesh, std::move(base), script_over({}, plan), task.progress.part(0.2, 0.45));
+  return map_to_base(working.mesh, std::move(*base), script_over({}, plan), task.progress.part(0.2, 0.45));
+}
+
+Found<Candidate> assembled(const RemeshTask& task, const WorkingSurface& working, Found<BaseMap> map, const std::optional<Plan::Origin>& origin,
+                           const Plan& plan) {
+  if (!map) return {std::nullopt, map.reason};
+  return found([&] { return assemble_candidate(task, working, std::move(*map), origin, operations_of(task, plan)); });
 }
 
 // A base on four points of the boundary. From then on the plan has its quads.
 Candidate grow(const RemeshTask& task, const Plan& plan) {
-  try {
-    WorkingSurface working;
-    BaseMap map = map_to_tower(task, *plan.tower, plan, working);
-    Plan::Origin origin;
-    origin.surface = task.source.fingerprint;
-    origin.tower = plan.tower;
-    return assemble_candidate(task, working, std::move(map), origin, operations_of(task, plan));
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;
-    throw Error(ErrorCode::Unsupported, std::string("no map to a chain of cubes on the boundary is found: ") + e.what());
-  }
+  WorkingSurface working;
+  Plan::Origin origin;
+  origin.surface = task.source.fingerprint;
+  origin.tower = plan.tower;
+  Found<Candidate> grown = assembled(task, working, map_to_tower(task, *plan.tower, plan, working), origin, plan);
+  if (!grown) throw Error(ErrorCode::Unsupported, "no map to a chain of cubes on the boundary is found: " + grown.reason);
+  return std::move(*grown);
 }
 
 // As it was made on the surface that the plan was made on; nothing if this is another one, or the base was changed by hand.
 std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   if (!plan.origin || plan.origin->surface != task.source.fingerprint) return std::nullopt;
-  try {
-    WorkingSurface working;
-    BaseMap map;
-    if (plan.origin->tower) {
-      map = map_to_tower(task, *plan.origin->tower, plan, working);
-    } else {
-      const BaseDomain base = make_base(task, *plan.origin, working);
-      map = map_to_base(working.mesh, base, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
-    }
-    Candidate c = assemble_candidate(task, working, std::move(map), plan.origin, operations_of(task, plan));
-    const LayoutOutline made = plan_from_json(c.plan).base;
-    if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;
-    return c;
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;
-    return std::nullopt;
+  WorkingSurface working;
+  Found<BaseMap> map;
+  if (plan.origin->tower) {
+    map = map_to_tower(task, *plan.origin->tower, plan, working);
+  } else {
+    const Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
+    if (!base) return std::nullopt;
+    map = map_to_base(working.mesh, *base.value, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
   }
+  Found<Candidate> c = assembled(task, working, std::move(map), plan.origin, plan);
+  if (!c) return std::nullopt;
+  const LayoutOutline made = plan_from_json(c->plan).base;
+  if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;
+  return std::move(c.value);
 }
 
 Candidate lay_out(const RemeshTask& task, const Plan& plan) {
@@ -95,13 +95,10 @@ Candidate lay_out(const RemeshTask& task, const Plan& plan) {
   move_outlines(script.levels, to_unit);
   for (LayoutScript::Level& level : script.levels)
     for (LayoutScript::Edit& edit : level.edits) edit.even_quads = 0;
-  try {
-    BaseMap map = map_to_base(working.mesh, to_patched_surface(laid.layout), script, task.progress.part(0.2, 0.45));
-    return assemble_candidate(task, working, std::move(map), std::nullopt, operations_of(task, plan));
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;
-    throw Error(ErrorCode::Unsupported, std::string("no map to the plan's quads is found on this surface: ") + e.what());
-  }
+  Found<BaseMap> map = map_to_base(working.mesh, to_patched_surface(laid.layout), script, task.progress.part(0.2, 0.45));
+  Found<Candidate> c = assembled(task, working, std::move(map), std::nullopt, plan);
+  if (!c) throw Error(ErrorCode::Unsupported, "no map to the plan's quads is found on this surface: " + c.reason);
+  return std::move(*c);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/found.h"
 #include "construction/construction.h"
 #include "remesh/level_fits.h"
 #include "remesh/plan_regions.h"
@@ -115,16 +116,12 @@ RegionUpdate repatch_hierarchy(const HybridMesh& hierarchy, const std::vector<in
   const int levels_above = uniform ? depth - region.level : mean_depth(made.hierarchy(), removed);
   RegionUpdate out;
   std::vector<int> patches;
-  try {
-    MappedEdit edit = repatch_region(made.state(), repatch, progress.part(0, 0.6));
-    out.energy_before = edit.energy_before;
-    out.energy_after = edit.energy_after;
-    for (const auto& [q, map] : edit.maps) patches.push_back(q);
-    made.apply(std::move(edit), 0);
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;
-    throw Error(ErrorCode::Unsupported, std::string("no map to the region's new quads is found: ") + e.what());
-  }
+  Found<MappedEdit> edit = found([&] { return repatch_region(made.state(), repatch, progress.part(0, 0.6)); });
+  if (!edit) throw Error(ErrorCode::Unsupported, "no map to the region's new quads is found: " + edit.reason);
+  out.energy_before = edit->energy_before;
+  out.energy_after = edit->energy_after;
+  for (const auto& [q, map] : edit->maps) patches.push_back(q);
+  made.apply(std::move(*edit), 0);
   made.close();
   HybridMesh& h = made.hierarchy();
   out.operation = h.operation_count() - 1;

@@ -55,32 +55,29 @@ constexpr double kMissed = 1.25;
 // Where the shape has no limbs that a minimal base keeps, only what is as far off as this is worth the time of another base.
 constexpr double kMissedByFar = 2;
 
-// Only disks can be laid out anew on finer levels, and where there are handles these are a small part.
-bool minimal_base_grows_skin(const RemeshTask& task) {
-  return task.options.base == BaseSize::Auto && !task.options.semi_regular && task.source.topology.genus <= task.source.topology.components;
-}
+bool minimal_base_grows_skin(const RemeshTask& task) { return task.options.base == BaseSize::Auto && !task.options.semi_regular; }
 
 // What is tried where the first remesh has missed something: a minimal base, which has few quads and grows skin on a finer level, keeps limbs that a
 // fitted one loses; else a base of which near-ties are decided in another way.
-Candidate another_candidate(const RemeshTask& task) {
+Found<Candidate> another_candidate(const RemeshTask& task) {
   RemeshOptions options = task.options;
   const bool minimal = minimal_base_grows_skin(task);
   if (minimal) options.base = BaseSize::Minimal;
   const RemeshTask other{options, task.source, task.progress, task.watch};
-  return fitted(other, search_candidate(other, {}, base_requests(options, !minimal)), true);
+  Found<Candidate> c = search_candidate(other, {}, base_requests(options, !minimal)).candidate;
+  if (c) c = {fitted(other, std::move(*c), true), {}};
+  return c;
 }
 
 // The best of what is tried.
 Candidate best_candidate(const RemeshTask& task) {
-  Candidate best = fitted(task, search_candidate(task, {}, base_requests(task.options, false)), true);
+  CandidateSearch first = search_candidate(task, {}, base_requests(task.options, false));
+  if (!first.candidate) throw Error(first.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, first.candidate.reason);
+  Candidate best = fitted(task, std::move(*first.candidate), true);
   if (task.options.error > 0 || farthest(best) < (minimal_base_grows_skin(task) ? kMissed : kMissedByFar)) return best;
-  try {
-    Candidate other = another_candidate(task);
-    if (other.distance.hausdorff < best.distance.hausdorff && other.distance.l2 <= best.distance.l2) return other;
-  } catch (const Error& e) {
-    if (e.code() == ErrorCode::Cancelled) throw;
-  }
-  return best;
+  Found<Candidate> other = another_candidate(task);
+  const bool better = other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2;
+  return better ? std::move(*other) : std::move(best);
 }
 
 // Everything was computed around the origin: brings maps and meshes to where the input stands.

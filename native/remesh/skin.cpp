@@ -21,8 +21,7 @@ Plan::Region region_of(const RegionRepatch& repatch, const Construction& made) {
   region.level = made.level();
   for (const int q : repatch.patches) region.quads.push_back(to_string(made.quads().address(q)));
   region.pattern = repatch.pattern;
-  region.start_quad = to_string(made.quads().address(repatch.start.patch));
-  region.start_side = repatch.start.side;
+  for (const PatchSide& start : repatch.starts) region.starts.push_back({to_string(made.quads().address(start.patch)), start.side});
   region.buffer_rings = repatch.buffer_rings;
   return region;
 }

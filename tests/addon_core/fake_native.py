@@ -50,7 +50,7 @@ def limits():
     """None is as in the library: a bound that the Python around it knows by itself shows."""
     return {
         "most_vertices": 1_000_003, "end_of_error": 0.75, "end_of_drop_components": 0.5, "most_levels": 9, "most_base_quads": 5003,
-        "least_stretch_threshold": 1.5, "most_stretch_threshold": 2e3, "most_seed": 10_007, "most_threads": 67, "most_cubes": 31,
+        "least_stretch_threshold": 1.5, "most_stretch_threshold": 2e3, "most_seed": 10_007, "most_threads": 67, "most_cubes": 31, "most_even_quads": 4099,
         "most_buffer_rings": 5, "most_snap": 0.3,
     }  # fmt: skip
 

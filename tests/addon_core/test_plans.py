@@ -93,6 +93,8 @@ def test_layouts_that_are_not_drawn():
 
     assert region(plans.automatic_layout()) == {"level": 3, "quads": ["0.1.2.3"], "layout": "automatic", "buffer_rings": 0}
     assert region(plans.cubes_layout(2))["height"] == 2 and region(plans.cubes_layout())["height"] == 0
+    assert region(plans.rows_layout(3)) | {"layout": "rows", "height": 3} == region(plans.rows_layout(3))
+    assert region(plans.even_layout(40)) | {"layout": "even", "even_quads": 40} == region(plans.even_layout(40))
     copied = region(plans.template_layout("0.1.2.3", 2, numpy.array([[0, 1, 2, 3]])))
     assert json.loads(json.dumps(copied)) == {"level": 3, "quads": ["0.1.2.3"], "layout": "template", "start": ["0.1.2.3", 2], "new_quads": [[0, 1, 2, 3]], "buffer_rings": 0}
 

@@ -285,6 +285,33 @@ def test_a_region_is_laid_out_without_curves(world, region, kind, new_quads):
     assert world.distance(region.scan, level_of(preview, sorted(one.hybrid_mesh.level for one in preview.hybrid_mesh.hierarchy.objects)[-1]))["hausdorff"] < 0.03
 
 
+def around(world, region):
+    """The faces that share a vertex with the region's, but for the region: a ring."""
+    mesh = region.level.data
+    inside = {v for f in region.faces for v in mesh.polygons[f].vertices}
+    return [p.index for p in mesh.polygons if p.index not in region.faces and inside & set(p.vertices)]
+
+
+@pytest.mark.parametrize("kind", ["ROWS", "EVEN", "AUTOMATIC"])
+def test_a_ring_of_quads_is_laid_out_anew(world, region, kind):
+    region.level.hide_set(False)
+    ring = around(world, region)
+    select_faces(world, region.level, ring)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind=kind, buffer_rings=1) == {"FINISHED"}
+    preview = bpy.context.object
+    (operation,) = json.loads(plan_of(preview))["operations"]
+    assert operation["layout"] == kind.lower() and len(operation["quads"]) == len(ring)
+    (made,) = operations(preview)
+    assert made["kind"] == "repatch" and len(made["quads"]) == len(ring)
+
+
+def test_a_disk_has_no_rows(world, region):
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    with pytest.raises(RuntimeError, match="ring"):
+        bpy.ops.hybrid_mesh.repatch_region(layout_kind="ROWS")
+
+
 def test_a_region_of_a_semi_regular_remesh_becomes_an_operation(world):
     bpy.context.scene.hybrid_mesh.semi_regular = True
     region = Region(world, world.scan())

@@ -52,7 +52,7 @@ def steps():
     for cls in reversed(panels):
         bpy.utils.unregister_class(cls)
     bpy.utils.register_class(layout_panel.HYBRID_MESH_PT_layout)
-    for kind in ("DRAWN", "AUTOMATIC", "CUBES", "COPY"):
+    for kind in ("DRAWN", "AUTOMATIC", "CUBES", "ROWS", "EVEN", "COPY"):
         bpy.context.scene.hybrid_mesh_region.layout_kind = kind
         stepper.view()["area"].tag_redraw()
         yield 1

@@ -16,8 +16,10 @@ KINDS = (
 )
 REGION_LAYOUTS = (
     ("DRAWN", "Drawn Curves", "The new quads are those that are drawn"),
-    ("AUTOMATIC", "Automatic", "The new quads are found from the region's boundary, so that its corners become regular"),
+    ("AUTOMATIC", "Automatic", "The new quads are found from the region's boundary, so that its corners become regular; rows in a ring, even quads where there are more boundaries or handles"),
     ("CUBES", "Cubes", "A tower of cubes grows skin on the region: rings of quads along its boundary, and its own quads on top"),
+    ("ROWS", "Rows", "Rows of quads for a region that is a ring, from one of its boundaries to the other"),
+    ("EVEN", "Even", "Quads of even size, whatever the region's topology: it may have handles and several boundaries"),
     ("COPY", "Copy", "The new quads are arranged as another operation of the hierarchy has them; the region has as many sides as that one's"),
 )
 
@@ -27,7 +29,11 @@ class RegionProperties:
 
     layout_kind: EnumProperty(name="Layout", description="Where the region's new quads come from", items=REGION_LAYOUTS, default="DRAWN")
     height: IntProperty(
-        name="Height", description="Cubes of the tower; 0 for as many as make its sides square", default=0, min=0, max=limits().most_cubes, soft_max=20
+        name="Height", description="Cubes of the tower, or rows of the ring; 0 for as many as make the quads square", default=0, min=0,
+        max=limits().most_cubes, soft_max=20,
+    )  # fmt: skip
+    even_quads: IntProperty(
+        name="Quads", description="About how many even quads the region gets; 0 for as many as it has", default=0, min=0, max=limits().most_even_quads
     )
     turn: IntProperty(name="Turn", description="Turns the copied layout by so many corners of the region's boundary", default=0, min=-100, max=100)
     buffer_rings: IntProperty(
@@ -44,7 +50,9 @@ def draw_region(layout, properties):
     layout.use_property_decorate = False
     column = layout.column()
     column.prop(properties, "layout_kind")
-    if properties.layout_kind == "CUBES":
+    if properties.layout_kind == "EVEN":
+        column.prop(properties, "even_quads")
+    if properties.layout_kind in ("CUBES", "ROWS"):
         column.prop(properties, "height")
     if properties.layout_kind == "COPY":
         column.prop(properties, "turn")

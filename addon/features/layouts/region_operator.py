@@ -78,6 +78,10 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             return plans.automatic_layout()
         if self.layout_kind == "CUBES":
             return plans.cubes_layout(self.height)
+        if self.layout_kind == "ROWS":
+            return plans.rows_layout(self.height)
+        if self.layout_kind == "EVEN":
+            return plans.even_layout(self.even_quads)
         if self.layout_kind == "COPY":
             return region_quads.copied_layout(level, hierarchy, self.source, self.turn)
         self._drawn = drawn = drawing.read_drawn(context, level)

@@ -124,7 +124,7 @@ PatchedSurface CurveNetwork::cut() {
   out.patch.assign(fine.faces.size(), -1);
   std::vector<int> stack;
   const auto seed = [&](int face, int q) {
-    if (out.patch[face] >= 0 && out.patch[face] != q) throw Error(ErrorCode::Internal, "two base quads claim one patch");
+    if (out.patch[face] >= 0 && out.patch[face] != q) throw NoMap("two base quads claim one patch");
     if (out.patch[face] == q) return;
     out.patch[face] = q;
     stack.push_back(face);
@@ -138,7 +138,7 @@ PatchedSurface CurveNetwork::cut() {
           out.patch[o / 3] = q;
           stack.push_back(o / 3);
         } else if (out.patch[o / 3] != q) {
-          throw Error(ErrorCode::Internal, "two base quads claim one patch");
+          throw NoMap("two base quads claim one patch");
         }
       }
     }
@@ -148,12 +148,12 @@ PatchedSurface CurveNetwork::cut() {
     if (c < 0) continue;
     const bool with = rank_on(c, fine.from(h)) < rank_on(c, fine.to(h));
     const PatchSide side = beside[c][with ? 0 : 1];
-    if (side.patch < 0) throw Error(ErrorCode::Internal, "a base curve borders no quad");
+    if (side.patch < 0) throw NoMap("a base curve borders no quad");
     seed(h / 3, side.patch);
   }
   for (const auto& [face, q] : seeds) seed(face, q);
   for (const int p : out.patch)
-    if (p < 0) throw Error(ErrorCode::Internal, "a part of the surface belongs to no base quad");
+    if (p < 0) throw NoMap("a part of the surface belongs to no base quad");
 
   // Nodes inside boundary edges: the boundary point nearest to the middle; an edge without inner points is split.
   for (const auto& [q, i] : split_boundary_chain_) {

@@ -117,7 +117,7 @@ void CurveNetwork::insert_vertex(int v, bool closed) {
       const int at = c.forward ? c.low + s : c.low + c.span - s;
       const Station& x = stations_[at % count];
       if (x.corner < 0) continue;
-      if (x.corner >= spoke_count) throw Error(ErrorCode::Internal, "a base curve crosses the boundary");
+      if (x.corner >= spoke_count) throw NoMap("a base curve crosses the boundary");
       for (Hit& hit : hits[x.corner])
         if (hit.chord == ci) {
           previous = hit.crossing = place(c, previous, mesh_.edge[spokes_[x.corner]], v, ring_[x.corner], hit.t, c.forward);
@@ -191,7 +191,7 @@ void CurveNetwork::draw(const std::vector<Vec2>& uv) {
     int h = mesh_.out[a];
     while (!(is_right(mesh_.to(h)) && !is_right(mesh_.apex(h)))) {
       h = mesh_.ccw(h);
-      if (h < 0 || h == mesh_.out[a]) throw Error(ErrorCode::Internal, "a segment of a layout leaves its disk");
+      if (h < 0 || h == mesh_.out[a]) throw NoMap("a segment of a layout leaves its disk");
     }
     int edge = EditMesh::next(h), previous = -1;  // from its right end to its left one
     for (;;) {
@@ -202,7 +202,7 @@ void CurveNetwork::draw(const std::vector<Vec2>& uv) {
       previous = place({c, 0, 0, -1, -1}, previous, mesh_.edge[edge], p, q, t, false);
       on_edge_[mesh_.edge[edge]].push_back(previous);
       const int o = mesh_.opposite[edge];
-      if (o < 0) throw Error(ErrorCode::Internal, "a segment of a layout leaves its disk");
+      if (o < 0) throw NoMap("a segment of a layout leaves its disk");
       const int apex = mesh_.apex(o);
       if (apex == b) break;
       edge = is_right(apex) ? EditMesh::prev(o) : EditMesh::next(o);

@@ -96,7 +96,7 @@ class CurveNetwork {
       if (p < 0 && q < 0) {
         int h = mesh_.find(start, end);
         if (h < 0) h = mesh_.find(end, start);
-        if (h < 0) throw Error(ErrorCode::Internal, "a base curve without crossings joins vertices that are not adjacent");
+        if (h < 0) throw NoMap("a base curve without crossings joins vertices that are not adjacent");
         along_edge_[mesh_.edge[h]] = curve;
         return;
       }
@@ -154,7 +154,7 @@ class CurveNetwork {
     const auto corner_of = [&](int v) {
       for (std::size_t i = 0; i < ring_.size(); ++i)
         if (ring_[i] == v) return corner_station_[i];
-      throw Error(ErrorCode::Internal, "a base curve ends outside the star that it runs through");
+      throw NoMap("a base curve ends outside the star that it runs through");
     };
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       const bool up = mesh_.from(sides_[i]) < mesh_.to(sides_[i]);

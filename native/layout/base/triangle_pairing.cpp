@@ -38,7 +38,7 @@ std::vector<int> pair_triangles(int n, const std::vector<PairCandidate>& candida
     }
   }
   lemon::MaxWeightedPerfectMatching<Graph, Graph::EdgeMap<std::int64_t>> matching(graph, weight);
-  if (!matching.run()) throw Error(ErrorCode::Internal, "the base triangles have no perfect matching");
+  if (!matching.run()) throw NoMap("the base triangles have no perfect matching");
   std::vector<int> choice(n, -1);
   for (int i = 0; i < n; ++i) choice[i] = candidate[matching.matching(nodes[i])];
   return choice;

@@ -12,7 +12,7 @@ struct PairCandidate {
 };
 
 // A perfect matching of largest weight of the faces 0 .. n - 1, in which a face may stay alone where it has a candidate with b = -1.
-// Returns the index of the candidate chosen for each face. Throws Error{Internal} if there is none.
+// Returns the index of the candidate chosen for each face. Throws NoMap if there is none.
 std::vector<int> pair_triangles(int n, const std::vector<PairCandidate>& candidates);
 
 }  // namespace hybrid_mesh

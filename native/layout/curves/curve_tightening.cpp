@@ -130,7 +130,7 @@ void CurveTightener::tighten_all(const Progress& progress) {
     changed_ = false;
     for (int c = 0; c < count; ++c) {
       progress.check();
-      if (curves_.curve(c).alive && !fixed_[c] && !tighten(c)) throw Error(ErrorCode::Internal, "a curve of a layout vanished when it was tightened");
+      if (curves_.curve(c).alive && !fixed_[c] && !tighten(c)) throw NoMap("a curve of a layout vanished when it was tightened");
     }
   }
   curves_.spread();

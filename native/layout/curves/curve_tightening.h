@@ -18,7 +18,7 @@ class CurveTightener {
 
   // False if the curve could be shortened to nothing, or to another one: then it is removed.
   bool tighten(int c);
-  // All that are not fixed, until none can be shortened further. Throws Error{Internal} if one vanishes.
+  // All that are not fixed, until none can be shortened further. Throws NoMap if one vanishes.
   void tighten_all(const Progress& progress);
 
  private:

@@ -45,17 +45,17 @@ void split_piece(std::vector<PieceCorner> polygon, const Emit& emit) {
       const double quality = area / (ab.squaredNorm() + bc.squaredNorm() + ca.squaredNorm());
       if (quality > best_quality) best_quality = quality, best = i;
     }
-    if (best < 0) throw Error(ErrorCode::Internal, "a piece of a triangle lies along one of its sides");
+    if (best < 0) throw NoMap("a piece of a triangle lies along one of its sides");
     const int p = (best + n - 1) % n, q = (best + 1) % n;
     emit(polygon[p], polygon[best], polygon[q], polygon[p].mark, polygon[best].mark, -1);
     polygon[p].mark = -1;
     polygon.erase(polygon.begin() + best);
   }
-  if (polygon[0].sides & polygon[1].sides & polygon[2].sides) throw Error(ErrorCode::Internal, "a piece of a triangle lies along one of its sides");
+  if (polygon[0].sides & polygon[1].sides & polygon[2].sides) throw NoMap("a piece of a triangle lies along one of its sides");
   emit(polygon[0], polygon[1], polygon[2], polygon[0].mark, polygon[1].mark, polygon[2].mark);
 }
 
-// The same for a whole triangle with the points on its sides, along chords. Throws Error{Internal} if they cross each other.
+// The same for a whole triangle with the points on its sides, along chords. Throws NoMap if they cross each other.
 template <class Emit>
 void split_along_chords(std::vector<PieceCorner> polygon, const std::vector<FaceChord>& chords, const Emit& emit) {
   // Cut off the shortest arc first: what lies below it holds no other chord.
@@ -67,10 +67,10 @@ void split_along_chords(std::vector<PieceCorner> polygon, const std::vector<Face
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<int>(i);
   for (const int i : order) {
     const auto low = std::find(left.begin(), left.end(), chords[i].low), high = std::find(left.begin(), left.end(), chords[i].high);
-    if (low == left.end() || high == left.end()) throw Error(ErrorCode::Internal, "two curves cross in a triangle");
+    if (low == left.end() || high == left.end()) throw NoMap("two curves cross in a triangle");
     std::vector<PieceCorner> piece;
     for (auto it = low; it != high + 1; ++it) piece.push_back(polygon[*it]);
-    if (piece.size() < 3) throw Error(ErrorCode::Internal, "a curve runs along a side of a triangle");
+    if (piece.size() < 3) throw NoMap("a curve runs along a side of a triangle");
     piece.back().mark = chords[i].curve;
     polygon[*low].mark = chords[i].curve;
     split_piece(piece, emit);

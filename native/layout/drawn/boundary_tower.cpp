@@ -71,7 +71,7 @@ PatchedSurface grow_boundary_tower(const TriangleSurface& surface, const Boundar
   if (!quad.failure.empty()) throw Error(ErrorCode::InvalidInput, "no quad has its corners at the boundary nodes: " + quad.failure);
   MappedSurface mapped{to_patched_surface(quad.layout), {}};
   mapped.corners.resize(mapped.surface.mesh.faces.size());
-  const std::optional<PatchRegion> region = make_region(mapped.surface, {0});
+  const std::optional<PatchRegion> region = make_disk(mapped.surface, {0});
   if (!region) throw Error(ErrorCode::Internal, "the quad on the boundary nodes is no disk");
   const int cubes = tower.cubes > 0 ? tower.cubes : std::max(1, tower_height(mapped.surface, *region));
   apply_edit(mapped, tower_edit(mapped.surface, *region, cubes));

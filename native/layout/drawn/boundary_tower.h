@@ -17,7 +17,7 @@ struct BoundaryTower {
 
 // Cuts a disk along the sides of such a base domain. Of its 4 n + 1 quads, quad 4 r + k lies on side k of the r-th ring, counted from the boundary
 // on, its first side towards that; the last one is the top. Throws Error{InvalidInput} for a surface that is no disk, and for nodes that lie at one
-// place of its boundary, Error{Internal} if no map is found.
+// place of its boundary, NoMap if no map is found.
 PatchedSurface grow_boundary_tower(const TriangleSurface& surface, const BoundaryTower& tower, const Progress& progress);
 
 }  // namespace hybrid_mesh

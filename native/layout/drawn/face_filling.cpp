@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/found.h"
 #include "layout/regions/disk_drawing.h"
 
 namespace hybrid_mesh {
@@ -360,12 +361,13 @@ PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options,
   const std::vector<DiskLayout> fillings = find_fillings(layout, options, progress);
   FaceCutter cutter(layout);
   for (int f = 0; f < static_cast<int>(layout.faces.size()); ++f) {
-    try {
+    const auto filled = found([&] {
       cutter.add(f, fillings[f]);
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal) throw;
+      return true;
+    });
+    if (!filled) {
       LayoutProblem problem{LayoutProblem::Kind::ManySides,
-                            "a face of " + std::to_string(layout.faces[f].side_count()) + " sides cannot be filled with quads (" + e.what() +
+                            "a face of " + std::to_string(layout.faces[f].side_count()) + " sides cannot be filled with quads (" + filled.reason +
                                 "): curves across it must divide it",
                             {}};
       problem.face = f;

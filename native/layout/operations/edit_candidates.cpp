@@ -42,7 +42,7 @@ std::vector<EditCandidate> find_edit_candidates(const QuadGraph& s, const std::v
   const bool room = s.patch_count() < options.most;
   const auto add_ring = [&](const std::vector<int>& patches) {
     if (!room) return;
-    if (const auto region = make_region(s, patches))
+    if (const auto region = make_disk(s, patches))
       if (const LayoutEdit edit = tower_edit(s, *region, 1); s.patch_count() + edit.growth() <= options.most) add(*region, edit);
   };
   for (int q = 0; q < s.patch_count(); ++q) {
@@ -51,7 +51,7 @@ std::vector<EditCandidate> find_edit_candidates(const QuadGraph& s, const std::v
       const PatchSide other = s.neighbours[q][i];
       if (other.patch <= q) continue;
       add_ring({q, other.patch});
-      if (const auto region = make_region(s, {q, other.patch}); region && region->corners.size() == 6) {
+      if (const auto region = make_disk(s, {q, other.patch}); region && region->corners.size() == 6) {
         // Corner `now` is where the side between them starts today.
         const int now = static_cast<int>(std::find(region->corners.begin(), region->corners.end(), s.nodes[q][i]) - region->corners.begin());
         for (const int from : {(now + 1) % 3, (now + 2) % 3})
@@ -65,7 +65,7 @@ std::vector<EditCandidate> find_edit_candidates(const QuadGraph& s, const std::v
     std::sort(patches.begin(), patches.end());
     if (std::unique(patches.begin(), patches.end()) != patches.end()) continue;
     add_ring(patches);
-    if (const auto region = make_region(s, patches); region && region->inner_nodes.size() == 1) {
+    if (const auto region = make_disk(s, patches); region && region->inner_nodes.size() == 1) {
       // The corner that the node is joined to now has an even or odd place; the other parity turns the star.
       int parity = 0;
       for (std::size_t k = 0; k < region->corners.size(); ++k) {

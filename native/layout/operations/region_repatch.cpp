@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "layout/drawn/face_filling.h"
+#include "layout/operations/region_outline.h"
 #include "layout/regions/patch_sets.h"
 #include "layout/regions/region_layout.h"
 #include "layout/regions/region_pattern.h"
@@ -59,10 +60,15 @@ struct LocalRegion {
   PatchRegion in_part;   // the same by those of the part: corner k is corner k
 };
 
-// An edit of the region by the part's numbers, by the level's.
+// An edit of the region by the part's numbers, by the level's; and back.
 LayoutEdit in_level(LayoutEdit edit, const LocalRegion& region) {
   edit.patches = region.in_level.patches;
-  edit.start = region.in_level.boundary[0];
+  edit.starts = region.in_level.starts();
+  return edit;
+}
+LayoutEdit in_part(LayoutEdit edit, const LocalRegion& region) {
+  edit.patches = region.in_part.patches;
+  edit.starts = region.in_part.starts();
   return edit;
 }
 
@@ -90,30 +96,78 @@ DrawnEdit draw(const PatchedSurface& surface, const LocalRegion& local, std::vec
   // The corners are the layout's first nodes, in their order: nodes have the numbers that an edit gives them.
   const int corners = static_cast<int>(region.corners.size());
   const FaceFillingOptions filling{regular_quads(local.level, local.in_level), joined_outside(local.level, local.in_level)};
-  DrawnEdit out;
+  DrawnEdit out{edit_of(region), {}};
   out.piece = fill_faces(drawn, filling, progress);
   if (!drawn.problems.empty()) throw LayoutError(std::move(drawn.problems));
-  out.edit.patches = region.patches;
-  out.edit.start = region.boundary[0];
   out.edit.inner_nodes = out.piece.node_count - corners;
   out.edit.quads = out.piece.nodes;
   return out;
 }
 
-// New quads that need no curves, by the level's numbers.
-LayoutEdit find_edit(const PatchedSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
+// Rows of quads for an annulus. Where its boundaries are joined with the fewest sides may leave no room: then there are more rows.
+LayoutEdit rows_in(const PatchedSurface& surface, const LocalRegion& local, int height, std::vector<std::vector<int>>& spokes,
+                   const Progress& progress) {
+  constexpr int tries = 3;
+  if (!is_annulus(local.in_level)) throw Error(ErrorCode::InvalidInput, "rows need a region that is a ring, with two boundaries and no handle");
+  const RowsPlace place = place_rows(surface, local.in_part);
+  const int least = height > 0 ? height : place.rows;
+  for (int more = 0;; ++more) {
+    spokes.clear();
+    LayoutEdit edit = rows_edit(local.level, local.in_level, least + more, place.shift, &spokes, progress);
+    const bool last = height > 0 || more + 1 == tries;
+    if (last || (find_filling_defect(edit.quads, local.in_level).empty() && find_edit_defect(local.level, local.in_level, edit).empty())) return edit;
+  }
+}
+
+DrawnEdit even_in(const PatchedSurface& surface, const LocalRegion& local, int quads, const Progress& progress) {
+  const int wanted = quads > 0 ? quads : static_cast<int>(local.in_part.patches.size());
+  std::string defect = "no even quads with its boundary are found: try another number of them, or a larger region";
+  constexpr std::uint64_t tries = 4;
+  for (std::uint64_t seed = 1; seed <= tries; ++seed) {
+    std::optional<DrawnEdit> drawn = even_edit(surface, local.in_part, wanted, seed, progress);
+    if (!drawn) continue;
+    defect = find_edit_defect(local.level, local.in_level, in_level(drawn->edit, local));
+    if (defect.empty()) return std::move(*drawn);
+  }
+  throw Error(ErrorCode::InvalidInput, defect);
+}
+
+// New quads that need no curves, by the part's numbers. Without a piece they may be drawn anywhere in a disk.
+DrawnEdit find_edit(const PatchedSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
+  using Kind = RegionPattern::Kind;
   const QuadGraph& level = local.level;
   const PatchRegion& region = local.in_level;
+  Kind kind = pattern.kind;
+  // Rows between rims of different numbers of sides would be cut open somewhere, and are seldom even.
+  if (kind == Kind::Automatic && !region.is_disk()) kind = has_rings(region) ? Kind::Rows : Kind::Even;
+  if (kind == Kind::Even) return even_in(surface, local, pattern.even_quads, progress);
   LayoutEdit edit;
-  if (pattern.kind == RegionPattern::Kind::Automatic) {
+  std::vector<std::vector<int>> spokes;
+  if (kind == Kind::Automatic) {
     edit = automatic_edit(level, region, progress);
-  } else if (pattern.kind == RegionPattern::Kind::Template) {
+  } else if (kind == Kind::Template) {
     edit = template_edit(region, pattern.quads);
+  } else if (kind == Kind::Rows) {
+    edit = rows_in(surface, local, pattern.height, spokes, progress);
   } else {
+    if (!region.is_disk()) throw Error(ErrorCode::InvalidInput, "cubes are grown on a disk of quads alone");
     edit = tower_edit(level, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, local.in_part)));
   }
+  if (const std::string defect = find_filling_defect(edit.quads, region); !defect.empty())
+    throw Error(ErrorCode::InvalidInput, "its new quads " + defect);
   if (const std::string defect = find_edit_defect(level, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
-  return edit;
+  DrawnEdit out{in_part(std::move(edit), local), {}};
+  if (region.is_disk()) return out;
+  out.piece = lay_out_region(surface, spread_outline(surface, local.in_part, out.edit, spokes), local.in_part, progress);
+  if (out.piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
+  return out;
+}
+
+// Which loops an edit of this pattern may lay out anew.
+FreeLoops loops_of(const RegionRepatch& repatch) {
+  const bool open =
+      repatch.pattern.kind == RegionPattern::Kind::Rows || (repatch.pattern.kind == RegionPattern::Kind::Template && !repatch.starts.empty());
+  return open ? FreeLoops::Open : FreeLoops::Rims;
 }
 
 // The given quads, and after them those in so many rings around.
@@ -144,9 +198,11 @@ double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<st
 
 MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& repatch, const Progress& progress) {
   const QuadGraph& level = state.quads;
-  std::optional<PatchRegion> region = make_region(level, repatch.patches, repatch.start);
+  const FreeLoops loops = loops_of(repatch);
+  std::optional<PatchRegion> region = make_region(level, repatch.patches, repatch.starts, loops);
   if (!region)
-    throw Error(ErrorCode::InvalidInput, "the quads of a region must form a disk whose boundary does not touch itself, and its start must be on it");
+    throw Error(ErrorCode::InvalidInput,
+                "the quads of a region must have a boundary that does not touch itself, and each of its starts must be on a part of it of its own");
   // One ring at least: sides that the new quads share with it follow its map.
   const std::vector<int> quads = with_rings(level, repatch.patches, std::max(1, repatch.buffer_rings));
   std::vector<PatchMap> maps = maps_of(state, quads);
@@ -160,26 +216,20 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   LocalRegion local{level, std::move(*region), {}};
   std::vector<int> first(repatch.patches.size());
   std::iota(first.begin(), first.end(), 0);
-  PatchSide start = local.in_level.boundary[0];
-  start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
-  local.in_part = *make_region(part.surface, first, start);
+  std::vector<PatchSide> starts = local.in_level.starts();
+  for (PatchSide& start : starts) start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
+  local.in_part = *make_region(part.surface, first, starts, loops);
 
   MappedEdit out;
   const double scale = state.placement.diagonal * std::sqrt(static_cast<double>(level.patch_count()) / state.area);
   const std::vector<double> energies = patch_energies(part, scale, GlobalMapOptions().theta);
   for (std::size_t k = 0; k < energies.size(); ++k)
     if (repatch.buffer_rings > 0 || k < repatch.patches.size()) out.energy_before += energies[k];
-  LayoutChange change;
-  if (repatch.pattern.kind == RegionPattern::Kind::Drawn) {
-    DrawnEdit edit = draw(part.surface, local, unit_strokes(repatch.pattern.strokes, state.placement), progress.part(0.2, 0.4));
-    out.edit = in_level(edit.edit, local);
-    change = apply_edit(part, std::move(edit));
-  } else {
-    LayoutEdit edit = out.edit = find_edit(part.surface, local, repatch.pattern, progress);
-    edit.patches = first;
-    edit.start = start;
-    change = apply_edit(part, edit);
-  }
+  DrawnEdit edit = repatch.pattern.kind == RegionPattern::Kind::Drawn
+                       ? draw(part.surface, local, unit_strokes(repatch.pattern.strokes, state.placement), progress.part(0.2, 0.4))
+                       : find_edit(part.surface, local, repatch.pattern, progress.part(0.2, 0.4));
+  out.edit = in_level(edit.edit, local);
+  const LayoutChange change = edit.piece.patch.empty() ? apply_edit(part, edit.edit) : apply_edit(part, std::move(edit));
   map_patches(part.surface, change.added, part.corners, progress.part(0.4, 0.5));
 
   // The numbers that the part's quads have in the level afterwards.
@@ -207,8 +257,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   out.energy_after = relax(charts, smoothed.surface, held, repatch.map, progress.part(0.5, 0.8));
   std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.mapped.surface.mesh.faces, progress.part(0.8, 1));
   for (std::size_t k = 0; k < relaxed.size(); ++k) {
-    if (const char* defect = find_map_defect(fresh[k]); *defect)
-      throw Error(ErrorCode::Internal, std::string("the map of a quad of the region: ") + defect);
+    if (const char* defect = find_map_defect(fresh[k]); *defect) throw NoMap(std::string("the map of a quad of the region: ") + defect);
     glued.trace(fresh[k]);
     for (Vec3& p : fresh[k].positions) p = state.placement.from_unit(p);
     out.maps.push_back({number[relaxed[k]], std::move(fresh[k])});

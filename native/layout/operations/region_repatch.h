@@ -15,27 +15,30 @@ struct RegionPattern {
   enum class Kind {
     Drawn,      // cut along curves
     Automatic,  // see automatic_edit()
-    Cubes,      // a cube tower
+    Cubes,      // a cube tower on a disk
+    Rows,       // of an annulus: see rows_edit()
+    Even,       // of even size, whatever the topology: see even_edit()
     Template    // given
   };
   Kind kind = Kind::Drawn;
   std::vector<DrawnStroke> strokes;       // Drawn
-  int height = 0;                         // Cubes; 0: see tower_height(), at least 1
+  int height = 0;                         // Cubes, Rows; 0: so that quads are about square, at least 1
+  int even_quads = 0;                     // Even: about so many; 0: as many as the region has
   std::vector<std::array<int, 4>> quads;  // Template: numbered as in LayoutEdit
 };
 
-// Quads of one level that are to be laid out anew.
+// Quads of one level that are to be laid out anew: a region of any topology.
 struct RegionRepatch {
   std::vector<int> patches;
-  PatchSide start;        // the boundary side that begins at corner 0; patch -1: any
-  RegionPattern pattern;  // its strokes where the level's maps have the surface
-  int buffer_rings = 1;   // so many rings of quads around are relaxed with the new ones; 0: none
-  GlobalMapOptions map;   // how much is done for a smooth map
+  std::vector<PatchSide> starts;  // the sides that begin at the first corners of the first rims, see make_region()
+  RegionPattern pattern;          // its strokes where the level's maps have the surface
+  int buffer_rings = 1;           // so many rings of quads around are relaxed with the new ones; 0: none
+  GlobalMapOptions map;           // how much is done for a smooth map
 };
 
 // Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is
 // relaxed there and in the rings around, at their cost alone. What lies farther off keeps its map exactly. Throws LayoutError for curves that make no
-// quads of the region, Error{InvalidInput} if the quads are no disk or the pattern does not fit it, Error{Internal} if no map is found.
+// quads of the region, Error{InvalidInput} if the quads are no region or the pattern does not fit it, NoMap if no map is found.
 MappedEdit repatch_region(const LevelState& state, const RegionRepatch& region, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -9,7 +9,9 @@
 #include <numeric>
 #include <utility>
 
+#include "base/found.h"
 #include "layout/regions/region_layout.h"
+#include "layout/regions/region_pattern.h"
 #include "parameterization/patch_energy.h"
 #include "parameterization/patch_gluing.h"
 
@@ -49,14 +51,14 @@ int tower_height_of(const LevelState& state, const PatchRegion& region) {
   const GluedMaps glued = glue_patch_maps(maps_of(state, region.patches), part_of(state.quads, region.patches));
   std::vector<int> all(region.patches.size());
   std::iota(all.begin(), all.end(), 0);
-  const std::optional<PatchRegion> local = make_region(glued.mapped.surface, all);
+  const std::optional<PatchRegion> local = make_disk(glued.mapped.surface, all);
   return local ? tower_height(glued.mapped.surface, *local) : 0;
 }
 
 RegionRepatch repatch_by(const LayoutEdit& edit) {
   RegionRepatch repatch;
   repatch.patches = edit.patches;
-  repatch.start = edit.start;
+  repatch.starts = edit.starts;
   if (edit.rings > 0) {
     repatch.pattern.kind = RegionPattern::Kind::Cubes;
     repatch.pattern.height = edit.rings;
@@ -84,13 +86,9 @@ std::vector<RegionRepatch> find_regions(const LevelState& state, const EditCandi
     RegionRepatch trial = repatch_by(candidates[i].edit);
     trial.map = trial_map_options();
     candidates[i].gain = -std::numeric_limits<double>::max();
-    try {
-      const MappedEdit made = repatch_region(state, trial, progress.part(0, 0));
-      candidates[i].gain = made.energy_before - made.energy_after;
-    } catch (const Error& e) {
-      // Without a map, or not fit to be refined from.
-      if (e.code() != ErrorCode::Internal && e.code() != ErrorCode::InvalidInput) throw;
-    }
+    if (!find_edit_defect(state.quads, candidates[i].region, candidates[i].edit).empty()) return;
+    const Found<MappedEdit> made = found([&] { return repatch_region(state, trial, progress.part(0, 0)); });
+    if (made) candidates[i].gain = made.value->energy_before - made.value->energy_after;
   });
   std::vector<RegionRepatch> found;
   for (const EditCandidate& c : choose_edits(state.quads, std::move(candidates), options)) found.push_back(repatch_by(c.edit));

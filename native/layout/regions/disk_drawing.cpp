@@ -10,9 +10,10 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
+#include <string>
 #include <utility>
 
-#include "base/error.h"
+#include "base/found.h"
 #include "layout/base/curve_network.h"
 #include "layout/base/quad_layout.h"
 #include "parameterization/convex_map.h"
@@ -32,18 +33,19 @@ class QuadDrawing {
     embed();
     const PatchedSurface disk = disk_;
     const std::vector<Vec2> uv = uv_;
+    std::string failure;
     for (const double room : kRoom) {
-      try {
+      Found<PatchedSurface> drawn = found([&] {
         place_nodes(room);
         return cut();
-      } catch (const Error& e) {
-        if (e.code() != ErrorCode::Internal || room == kRoom.back()) throw;
-        disk_ = disk;
-        uv_ = uv;
-        inner_vertex_.clear();
-      }
+      });
+      if (drawn) return std::move(*drawn);
+      failure = drawn.reason;
+      disk_ = disk;
+      uv_ = uv;
+      inner_vertex_.clear();
     }
-    throw Error(ErrorCode::Internal, "no drawing of a disk's quads was tried");
+    throw NoMap(failure);
   }
 
  private:
@@ -69,8 +71,7 @@ class QuadDrawing {
       connect_half_edges(disk());
     }
     std::vector<std::array<Vec2, 3>> corners(disk().faces.size());
-    if (!convex_map(faces, sides, polygon_, corners))
-      throw Error(ErrorCode::Internal, "the map of a disk to a polygon degenerates in double precision");
+    if (!convex_map(faces, sides, polygon_, corners)) throw NoMap("the map of a disk to a polygon degenerates in double precision");
     uv_.resize(disk().points.size());
     for (const int f : faces)
       for (int i = 0; i < 3; ++i) uv_[disk().faces[f][i]] = corners[f][i];

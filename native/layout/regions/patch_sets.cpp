@@ -125,7 +125,7 @@ void part_at_nodes(const QuadGraph& s, PatchSet& in) {
   }
 }
 
-std::vector<PatchRegion> disks_around(const QuadGraph& s, const PatchSet& in) {
+std::vector<PatchRegion> regions_around(const QuadGraph& s, const PatchSet& in) {
   std::vector<PatchRegion> regions;
   std::vector<char> taken(s.patch_count(), 0);
   for (const std::vector<int>& seed : components(s, in, 1)) {
@@ -148,9 +148,9 @@ std::vector<PatchRegion> disks_around(const QuadGraph& s, const PatchSet& in) {
           free &= !taken[q];
         }
       if (!free) break;
-      if (std::optional<PatchRegion> disk = make_region(s, patches)) {
+      if (std::optional<PatchRegion> found = make_region(s, patches)) {
         for (const int q : patches) taken[q] = 1;
-        regions.push_back(std::move(*disk));
+        regions.push_back(std::move(*found));
         break;
       }
       region = dilated(s, region);

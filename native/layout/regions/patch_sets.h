@@ -19,7 +19,8 @@ void open_to_loops(const QuadGraph& graph, PatchSet& in, const std::vector<doubl
 // Takes out patches where the set merely touches itself at a node, the fewer ones there.
 void part_at_nodes(const QuadGraph& graph, PatchSet& in);
 
-// Disks that hold the given patches, and more where these alone are none.
-std::vector<PatchRegion> disks_around(const QuadGraph& graph, const PatchSet& in);
+// Disjoint regions that hold the given patches, with what they enclose, and more where their boundary would touch itself. A region has handles, or
+// several rims, where the surface has handles there.
+std::vector<PatchRegion> regions_around(const QuadGraph& graph, const PatchSet& in);
 
 }  // namespace hybrid_mesh

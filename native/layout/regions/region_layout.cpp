@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "base/error.h"
+#include "base/found.h"
 #include "layout/base/curve_network.h"
 #include "layout/base/decimation.h"
 #include "layout/base/quad_layout.h"
@@ -48,6 +48,7 @@ class Relayout {
 
   LayoutChange run() {
     take_region();
+    if (!region_.is_disk()) throw NoMap("quads are drawn without lines in a disk alone");
     std::vector<std::vector<int>> sides;
     for (const PatchSide& side : region_.boundary) sides.push_back(part_.surface.sides[local_patch(side.patch)][side.side]);
     piece_ = draw_quads(part_.surface, sides, edit_);
@@ -62,8 +63,8 @@ class Relayout {
 
  private:
   void take_region() {
-    std::optional<PatchRegion> region = make_region(mapped_.surface, edit_.patches, edit_.start);
-    if (!region) throw Error(ErrorCode::Internal, "a region to be laid out anew is no disk");
+    std::optional<PatchRegion> region = make_region(mapped_.surface, edit_.patches, edit_.starts, FreeLoops::Open);
+    if (!region) throw Error(ErrorCode::Internal, "there is no such region to be laid out anew");
     region_ = std::move(*region);
     part_ = part_of(mapped_.surface, edit_.patches);
   }
@@ -158,19 +159,14 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
   decimation.target_faces = std::max(n - 2, static_cast<int>(slack * quads));
   EditMesh mesh(disk);
   std::vector<MeshEdit> log;
-  QuadLayout layout;
-  try {
-    std::vector<VertexQuadric> quadrics = decimate(mesh, disk.points, decimation, log, progress);
-    for (std::size_t v = 0; v < corner_of.size(); ++v)
-      if (mesh.vertex_alive(static_cast<int>(v)) && mesh.is_boundary(static_cast<int>(v)) && corner_of[v] < 0) return std::nullopt;
-    layout = make_quad_layout(mesh, disk.points, std::move(quadrics), options, log, progress);
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;
-    return std::nullopt;
-  }
+  std::vector<VertexQuadric> quadrics = decimate(mesh, disk.points, decimation, log, progress);
+  for (std::size_t v = 0; v < corner_of.size(); ++v)
+    if (mesh.vertex_alive(static_cast<int>(v)) && mesh.is_boundary(static_cast<int>(v)) && corner_of[v] < 0) return std::nullopt;
+  Found<QuadLayout> quad_layout = found([&] { return make_quad_layout(mesh, disk.points, std::move(quadrics), options, log, progress); });
+  if (!quad_layout) return std::nullopt;
+  const QuadLayout& layout = *quad_layout;
   DrawnEdit out;
-  out.edit.patches = region.patches;
-  out.edit.start = region.boundary[0];
+  out.edit = edit_of(region);
   std::vector<int> number(layout.node_vertex.size());
   for (std::size_t k = 0; k < number.size(); ++k) {
     const int corner = corner_of[layout.node_vertex[k]];

@@ -21,13 +21,15 @@ struct DrawnEdit {
   LayoutEdit edit;
   PatchedSurface piece;  // the region cut along the new quads' sides
 };
-// New quads of even size that follow the region's shape, found by decimating it; about `quads`. Nothing if there are none that keep its boundary.
+// New quads of even size that follow the region's shape, found by decimating it; about `quads`. Nothing if there are none that keep its rims. All
+// loops are to be rims.
 std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed,
                                    const Progress& progress);
 
-// Applies an edit: the region is mapped to a convex polygon, the new quads are drawn in it with straight sides, and the surface is cut along them.
-// The quads' maps are left to map_patches, and `mapped.corners` has entries for all faces. Throws Error{Internal} if the region's map degenerates.
+// Applies an edit of a disk: it is mapped to a convex polygon, the new quads are drawn in it with straight sides, and the surface is cut along them.
+// The quads' maps are left to map_patches, and `mapped.corners` has entries for all faces. Throws NoMap if the disk's map degenerates.
 LayoutChange apply_edit(MappedSurface& mapped, const LayoutEdit& edit);
+// The same along given lines, in a region of any topology.
 LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit edit);
 
 }  // namespace hybrid_mesh

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/found.h"
 #include "layout/base/base_domain.h"
 #include "layout/search/layout_search.h"
 
@@ -19,12 +20,11 @@ struct BaseMap {
 };
 
 // Maps `surface` to `base`, whose layout is improved on the way: found on a coarse version of the surface, and carried back to the surface vertex by
-// vertex. Throws Error{Internal} if no bijective map is found that holds in double precision; with options for finer levels sooner than without.
-BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress);
+// vertex. With options for finer levels there is no map sooner than without.
+Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress);
 // What a script says instead of a search: with one that came of the same surface and base the same map.
-BaseMap map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress);
-// The same on a surface that is cut along its base's sides already. Throws Error{Internal} if no map is found, or the layout has no such quads as the
-// script names.
-BaseMap map_to_base(const TriangleSurface& surface, PatchedSurface base, const LayoutScript& script, const Progress& progress);
+Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress);
+// The same on a surface that is cut along its base's sides already. No map either if the layout has no such quads as the script names.
+Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, const LayoutScript& script, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -17,9 +17,12 @@ class CarriedMap {
  public:
   CarriedMap(const TriangleSurface& surface, CutSurface cut);
 
-  // Undoes collapses until so many vertices are alive. The charts' triangles are then those of the surface so far, uncut, and their vertices and
-  // faces its own; nothing happens where there is nothing to undo. Throws Error{Internal} where the map cannot be freed of the cuts, and then nothing
-  // has changed.
+  // Takes another layout of the coarse surface, cut along it, and its map.
+  void replace(PatchedSurface cut_layout, ChartMesh cut_charts);
+  // Frees the map of the cuts: the charts' triangles are then those of the coarse surface, and their vertices and faces the surface's own; nothing
+  // happens where the surface itself was cut. Throws NoMap where that cannot be done, and then nothing has changed.
+  void uncut(const GlobalMapOptions& options, const Progress& progress);
+  // The same, and undoes collapses until so many vertices are alive. Nothing happens where there is nothing to undo.
   void carry(double vertices, const GlobalMapOptions& options, const Progress& progress);
   void quadrisect();
   // The coarse surface cut along the layout's sides as the map has them.
@@ -31,6 +34,7 @@ class CarriedMap {
 
  private:
   const TriangleSurface& surface_;
+  bool is_cut_ = true;  // the charts' triangles are parts of the coarse surface's
   EditMesh collapsed_;
   std::vector<int> log_;                   // collapses that made the coarse version
   std::vector<std::array<int, 3>> faces_;  // of the coarse version, by number of the surface's face

@@ -3,8 +3,11 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "base/found.h"
 #include "parameterization/initial_map.h"
 
 namespace hybrid_mesh {
@@ -40,9 +43,10 @@ class EditSearch {
     // The region's patches come first in the part.
     LayoutEdit edit = candidate.edit;
     for (std::size_t k = 0; k < edit.patches.size(); ++k) edit.patches[k] = static_cast<int>(k);
-    for (std::size_t k = 0; k < candidate.edit.patches.size(); ++k)
-      if (candidate.edit.patches[k] == candidate.edit.start.patch) edit.start.patch = static_cast<int>(k);
-    try {
+    for (PatchSide& start : edit.starts)
+      start.patch =
+          static_cast<int>(std::find(candidate.edit.patches.begin(), candidate.edit.patches.end(), start.patch) - candidate.edit.patches.begin());
+    const Found<double> after = found([&] {
       const std::vector<int> fresh = apply_edit(local, edit).added;
       map_patches(local.surface, fresh, local.corners, progress);
       ChartMesh charts(local.surface, local.corners);
@@ -55,11 +59,9 @@ class EditSearch {
       options.corners_move = false;  // the rim is held
       options.sweeps = 1;
       const GlobalMapReport report = smooth_map(charts, local.surface, options, progress);
-      return before - (report.energy - 1) * area;
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal) throw;
-      return -1e300;
-    }
+      return (report.energy - 1) * area;
+    });
+    return after ? before - *after.value : -std::numeric_limits<double>::max();
   }
 
   const TrialMap& map_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "layout/operations/region_outline.h"
 #include "layout/regions/patch_sets.h"
 
 namespace hybrid_mesh {
@@ -31,7 +32,7 @@ double sum_over(const PatchRegion& region, const std::vector<double>& of) {
   return sum;
 }
 
-// Disks of patches of more energy than `least`, the smallest first.
+// Regions of patches of more energy than `least`, the smallest first.
 std::vector<PatchRegion> uneven_regions(const QuadGraph& s, const std::vector<double>& energy, const std::vector<double>& share, double least) {
   std::vector<char> uneven(s.patch_count(), 0);
   for (int q = 0; q < s.patch_count(); ++q) uneven[q] = energy[q] > least || energy[q] > least * share[q] * s.patch_count();
@@ -42,43 +43,13 @@ std::vector<PatchRegion> uneven_regions(const QuadGraph& s, const std::vector<do
     open_to_loops(s, wide, energy);
     part_at_nodes(s, wide);
   }
-  std::vector<PatchRegion> regions = disks_around(s, wide);
+  std::vector<PatchRegion> regions = regions_around(s, wide);
   std::stable_sort(regions.begin(), regions.end(),
                    [&](const PatchRegion& a, const PatchRegion& b) { return sum_over(a, share) < sum_over(b, share); });
   return regions;
 }
 
 }  // namespace
-
-LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region) {
-  constexpr std::size_t parts = 4;
-  LayoutOutline outline;
-  outline.quads = drawn.edit.quads;
-  outline.nodes.resize(region.corners.size() + drawn.edit.inner_nodes);
-  outline.sides.resize(outline.quads.size());
-  for (std::size_t q = 0; q < outline.quads.size(); ++q)
-    for (int i = 0; i < 4; ++i) {
-      const std::vector<int>& side = drawn.piece.sides[q][i];
-      const auto at = [&](std::size_t k) { return drawn.piece.mesh.points[side[k]]; };
-      outline.nodes[outline.quads[q][i]] = at(0);
-      const std::size_t last = side.size() - 1, count = std::min(parts, last);
-      // Each line once; the boundary's is known.
-      if (outline.quads[q][i] > outline.quads[q][(i + 1) % 4]) continue;
-      for (std::size_t k = 0; k <= count; ++k) outline.sides[q][i].push_back(at(k * last / count));
-    }
-  return outline;
-}
-
-PatchedSurface lay_out_region(const MappedSurface& mapped, LayoutOutline outline, const PatchRegion& region, const Progress& progress) {
-  const PatchedPart part = part_of(mapped.surface, region.patches);
-  for (std::size_t k = 0; k < region.corners.size(); ++k) {
-    const PatchSide& s = region.boundary[k];
-    const auto patch = std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin();
-    outline.nodes[k] = part.surface.mesh.points[part.surface.sides[patch][s.side].front()];
-  }
-  const TransferredLayout laid = transfer_layout(part.surface.mesh, outline, progress);
-  return laid.failure.empty() ? to_patched_surface(laid.layout) : PatchedSurface();
-}
 
 EvenRegions find_even_regions(const TrialMap& map, const EvenRegionsOptions& options, const Progress& progress) {
   const PatchedSurface& s = map.mapped().surface;

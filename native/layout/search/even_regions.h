@@ -20,13 +20,7 @@ struct EvenRegions {
   std::vector<DrawnEdit> drawn;           // the same
 };
 
-// Even quads for the disks of patches that need them. `map`: begun.
+// Even quads for the regions that need them. `map`: begun.
 EvenRegions find_even_regions(const TrialMap& map, const EvenRegionsOptions& options, const Progress& progress);
-
-// Where the quads of a region's edit lie: their nodes, and lines of a few points along their sides.
-LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region);
-
-// The region cut along the sides of an outline's quads; without patches if there is no way to lay them out.
-PatchedSurface lay_out_region(const MappedSurface& mapped, LayoutOutline outline, const PatchRegion& region, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/found.h"
+
 namespace hybrid_mesh {
 namespace {
 
@@ -22,19 +24,21 @@ class Carriers {
       // Another exception is on its way already.
     }
   }
-  void carry(CarriedMap& map, const GlobalMapOptions& options, const Progress& progress) {
-    tasks_.run([this, &map, &options, progress] {
-      try {
-        map.carry(std::numeric_limits<double>::infinity(), options, progress);
-      } catch (...) {
-        failed_.store(true, std::memory_order_relaxed);
-        throw;
-      }
+  void carry(MappedLayouts::Stage& stage, const GlobalMapOptions& options, const Progress& progress) {
+    tasks_.run([this, &stage, &options, progress] {
+      const auto carried = found([&] {
+        stage.map.carry(std::numeric_limits<double>::infinity(), options, progress);
+        return true;
+      });
+      stage.failure = carried.reason;
+      // Without a map of a finer level, further search is in vain; that of the base can be made in another way.
+      if (!carried && stage.level > 0) failed_.store(true, std::memory_order_relaxed);
     });
   }
-  // Throws what a carrier has thrown: where one map cannot be carried, further search is in vain.
   void check() {
-    if (failed_.load(std::memory_order_relaxed)) tasks_.wait();
+    if (!failed_.load(std::memory_order_relaxed)) return;
+    tasks_.wait();
+    throw NoMap("the map of a level with operations could not be carried to the surface");
   }
   void wait() { tasks_.wait(); }
 
@@ -68,8 +72,16 @@ class LevelMapper {
     result_.stages.reserve(versions_.size());  // carriers hold on to them
     Carriers carriers;
     const auto keep = [&] {
-      result_.stages.push_back({static_cast<int>(result_.script.levels.size()) - 1, map_.best()});
-      if (last > 0) carriers.carry(result_.stages.back().map, versions_[0].map, progress.part(0, 0));
+      const int level = static_cast<int>(result_.script.levels.size()) - 1;
+      Found<bool> free;
+      if (last > 0)
+        free = found([&] {
+          map_.uncut(versions_[0].map, progress.part(0, 0));
+          return true;
+        });
+      if (!free && level > 0 && last > 0) throw NoMap(free.reason);
+      result_.stages.push_back({level, map_.best(), free.reason});
+      if (free) carriers.carry(result_.stages.back(), versions_[0].map, progress.part(0, 0));
     };
     const auto is_new = [&] { return result_.stages.empty() || !result_.script.levels.back().edits.empty(); };
     for (std::size_t level = 1; level <= last; ++level) {
@@ -83,6 +95,7 @@ class LevelMapper {
     }
     if (is_new()) keep();
     carriers.wait();
+    carriers.check();
   }
 
   TrialMap map_;

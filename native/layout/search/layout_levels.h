@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "layout/search/layout_script.h"
@@ -21,6 +22,7 @@ struct MappedLayouts {
   struct Stage {
     int level;
     CarriedMap map;
+    std::string failure;  // why the map cannot be carried to the surface; empty as far as is known
   };
   std::vector<Stage> stages;
 };
@@ -29,7 +31,7 @@ struct MappedLayouts {
 using LevelWork = std::function<std::vector<LayoutScript::Edit>(TrialMap& map, std::size_t level, const Progress& progress)>;
 
 // Maps a base and works on it, then on its quadrants, and so on, a level for each of `versions`. The maps of levels that have edits are carried to
-// the surface meanwhile. Throws Error{Internal} where a map cannot be found or carried to the surface.
+// the surface meanwhile. Throws NoMap where a map cannot be found, or that of a finer level not be carried to the surface.
 MappedLayouts map_levels(CarriedMap base, const std::vector<LevelVersion>& versions, const LevelWork& work, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -4,40 +4,38 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <utility>
 
+#include "layout/operations/region_outline.h"
 #include "layout/regions/region_pattern.h"
 #include "layout/search/even_regions.h"
 
 namespace hybrid_mesh {
 namespace {
 
-// Throws Error{Internal} for an edit that is none of this layout's: a script may have been made for another one.
-void require_fit(const QuadGraph& s, const LayoutEdit& edit) {
-  const auto fails = [] [[noreturn]] { throw Error(ErrorCode::Internal, "an edit does not fit its layout"); };
-  const std::set<int> patches(edit.patches.begin(), edit.patches.end());
-  if (patches.empty() || *patches.begin() < 0 || *patches.rbegin() >= s.patch_count() || !patches.count(edit.start.patch)) fails();
-  if (patches.count(s.neighbours[edit.start.patch][edit.start.side].patch)) fails();
-  const std::optional<PatchRegion> region = make_region(s, edit.patches, edit.start);
-  if (!region) fails();
+// The region of an edit. Throws Error{Internal} for one that is none of this layout's: a script may have been made for another one.
+PatchRegion fitting_region(const QuadGraph& s, const LayoutEdit& edit) {
+  const auto fails = [] [[noreturn]] { throw NoMap("an edit does not fit its layout"); };
+  const bool known = std::all_of(edit.patches.begin(), edit.patches.end(), [&](int q) { return q >= 0 && q < s.patch_count(); });
+  if (!known || edit.starts.empty()) fails();
+  std::optional<PatchRegion> region = make_region(s, edit.patches, edit.starts, FreeLoops::Open);
+  if (!region || region->rim_count() != static_cast<int>(edit.starts.size())) fails();
   const int corners = static_cast<int>(region->corners.size());
-  if (!find_filling_defect(edit.quads, corners).empty()) fails();
+  if (!find_filling_defect(edit.quads, *region).empty()) fails();
   int nodes = corners;
   for (const auto& quad : edit.quads) nodes = std::max(nodes, *std::max_element(quad.begin(), quad.end()) + 1);
   if (nodes - corners != edit.inner_nodes || edit.rings < 0 || static_cast<std::int64_t>(corners) * edit.rings > edit.inner_nodes) fails();
+  return std::move(*region);
 }
 
 // A region's even quads, along the same lines if this is the surface that they were found on; else along their outline, or, without one, where the
 // map puts them.
 DrawnEdit even_again(const MappedSurface& mapped, const LayoutScript::Edit& even, const Progress& progress) {
-  require_fit(mapped.surface, even.edit);
-  const std::optional<PatchRegion> region = make_region(mapped.surface, even.edit.patches, even.edit.start);
-  if (!region) throw Error(ErrorCode::Internal, "the quads of an operation are no disk");
-  std::optional<DrawnEdit> found = even.even_quads > 0 ? even_edit(mapped.surface, *region, even.even_quads, 1, progress) : std::nullopt;
+  const PatchRegion region = fitting_region(mapped.surface, even.edit);
+  std::optional<DrawnEdit> found = even.even_quads > 0 ? even_edit(mapped.surface, region, even.even_quads, 1, progress) : std::nullopt;
   if (found && found->edit.quads == even.edit.quads) return std::move(*found);
   DrawnEdit edit{even.edit, {}};
-  if (!even.outline.nodes.empty()) edit.piece = lay_out_region(mapped, even.outline, *region, progress);
+  if (!even.outline.nodes.empty()) edit.piece = lay_out_region(mapped.surface, even.outline, region, progress);
   return edit;
 }
 
@@ -50,7 +48,7 @@ void repeat_round(TrialMap& map, const std::vector<LayoutScript::Edit>& round, c
   } else {
     std::vector<LayoutEdit> edits;
     for (const LayoutScript::Edit& of : round) {
-      require_fit(map.mapped().surface, of.edit);
+      fitting_region(map.mapped().surface, of.edit);
       edits.push_back(of.edit);
     }
     apply_edits(map, edits, options, progress);

@@ -18,8 +18,8 @@ struct LayoutScript {
     double even_quads = 0;  // what even_edit() was asked for; 0: it is not to find them again
     LayoutOutline
         outline;  // of an even edit: its quads where they lay in space, the region's corners first among the nodes; without nodes: not known
-    std::vector<std::string> quads;  // addresses of edit.patches, once the edit has been applied where quads have addresses
-    std::string start_quad;          // that of edit.start
+    std::vector<std::string> quads;        // addresses of edit.patches, once the edit has been applied where quads have addresses
+    std::vector<std::string> start_quads;  // those of the quads of edit.starts
   };
   struct Level {
     double vertices = 0, vertices_a_quad = 0;  // see LayoutSearchOptions

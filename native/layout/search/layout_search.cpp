@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/found.h"
 #include "layout/search/edit_search.h"
 #include "layout/search/even_regions.h"
 
@@ -13,23 +14,21 @@ using Edits = std::vector<LayoutScript::Edit>;
 
 // Lays out the uneven regions anew; returns the edits if the map is better for them.
 Edits lay_out_evenly(TrialMap& map, const LevelSearchOptions& options, const Progress& progress) {
-  try {
+  Found<Edits> made = found([&]() -> Edits {
     map.begin(options.map.theta, progress);
-    EvenRegions found = find_even_regions(map, {options.even_quads, static_cast<double>(options.quads), options.uneven}, progress);
-    if (found.edits.empty()) return {};
-    apply_drawn_edits(map, std::move(found.drawn), options.map, progress);
+    EvenRegions even = find_even_regions(map, {options.even_quads, static_cast<double>(options.quads), options.uneven}, progress);
+    if (even.edits.empty()) return {};
+    apply_drawn_edits(map, std::move(even.drawn), options.map, progress);
     if (!map.is_better()) return {};
     map.keep();
-    return std::move(found.edits);
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;
-    return {};
-  }
+    return std::move(even.edits);
+  });
+  return made ? std::move(*made) : Edits();
 }
 
 // One round of edits; returns them if the map is better for them.
 std::vector<LayoutEdit> improve_once(TrialMap& map, const EditSearchOptions& options, const Progress& progress) {
-  try {
+  Found<std::vector<LayoutEdit>> made = found([&]() -> std::vector<LayoutEdit> {
     map.begin(options.map.theta, progress.part(0, 0.1));
     std::vector<LayoutEdit> edits = find_edits(map, options, progress.part(0.1, 0.6));
     if (edits.empty()) return {};
@@ -37,11 +36,9 @@ std::vector<LayoutEdit> improve_once(TrialMap& map, const EditSearchOptions& opt
     if (!map.is_better()) return {};
     map.keep();
     return edits;
-  } catch (const Error& e) {
-    // What was found before stays.
-    if (e.code() != ErrorCode::Internal) throw;
-    return {};
-  }
+  });
+  // Without a map what was found before stays.
+  return made ? std::move(*made) : std::vector<LayoutEdit>();
 }
 
 // For as long as that gains.

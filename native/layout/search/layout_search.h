@@ -28,7 +28,7 @@ struct LayoutSearchOptions {
 
 // Smooths the map of a cut surface, and improves its layout by local edits between: each is tried out, the region and its surroundings mapped anew,
 // and kept where the map's energy falls. Then the same with the quads quadrisected, level by level, each on a finer version of the surface. `map`
-// comes with a cut surface. Throws Error{Internal} where a map cannot be found or carried to the surface.
+// comes with a cut surface. Throws NoMap where a map cannot be found or carried to the surface.
 MappedLayouts search_layout(CarriedMap map, const LayoutSearchOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/search/trial_map.h"
 
+#include <string>
 #include <utility>
 
+#include "base/found.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_energy.h"
 
@@ -16,11 +18,11 @@ void TrialMap::map_patches_and_keep(const GlobalMapOptions& options, const Progr
 }
 
 void TrialMap::refine(double vertices, const GlobalMapOptions& options, const Progress& progress) {
-  try {
+  // A coarser surface than wished does as well as it can.
+  found([&] {
     best_.carry(vertices, options, progress);
-  } catch (const Error& e) {
-    if (e.code() != ErrorCode::Internal) throw;  // a coarser surface than wished does as well as it can
-  }
+    return true;
+  });
   best_.quadrisect();
   least_ *= 4;
 }
@@ -44,23 +46,26 @@ LayoutChange TrialMap::change(DrawnEdit drawn, const Progress& progress) {
 }
 
 void TrialMap::smooth(GlobalMapOptions options, const Progress& progress) {
-  for (int attempt = 0;; ++attempt) {
-    try {
+  constexpr int attempts = 3;
+  std::string failure;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    const Found<GlobalMapReport> report = found([&] {
       fresh_.emplace(mapped_.surface, mapped_.corners);
-      const GlobalMapReport report = smooth_map(*fresh_, mapped_.surface, options, progress);
-      excess_ = (report.energy - 1) * mapped_.surface.patch_count();
+      return smooth_map(*fresh_, mapped_.surface, options, progress);
+    });
+    if (report) {
+      excess_ = (report.value->energy - 1) * mapped_.surface.patch_count();
       return;
-    } catch (const Error& e) {
-      if (e.code() != ErrorCode::Internal || attempt == 2) throw;
-      options.vertices_a_quad *= 3;
     }
+    failure = report.reason;
+    options.vertices_a_quad *= 3;
   }
+  throw NoMap(failure);
 }
 
 void TrialMap::keep() {
   least_ = excess_;
-  best_.layout = mapped_.surface;
-  best_.charts = std::move(*fresh_);
+  best_.replace(mapped_.surface, std::move(*fresh_));
 }
 
 void apply_edits(TrialMap& map, const std::vector<LayoutEdit>& edits, GlobalMapOptions options, const Progress& progress) {

@@ -16,6 +16,8 @@ class TrialMap {
 
   // Maps the patches of the layout that it was made with. To be called first.
   void map_patches_and_keep(const GlobalMapOptions& options, const Progress& progress);
+  // Frees the map of the cuts. Throws NoMap, see CarriedMap.
+  void uncut(const GlobalMapOptions& options, const Progress& progress) { best_.uncut(options, progress); }
   // Goes on to the patches' quadrants, on a version of the surface with so many vertices, or a coarser one where that cannot be had.
   void refine(double vertices, const GlobalMapOptions& options, const Progress& progress);
 

@@ -88,7 +88,7 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
       if (!edit) continue;
       ++applied;
       const int before = fine.surface.patch_count(), irregular = irregular_nodes(fine.surface);
-      const int growth = *irregular_growth(fine.surface, *make_region(fine.surface, edit->patches, edit->start), *edit, node_valences(fine.surface),
+      const int growth = *irregular_growth(fine.surface, *make_region(fine.surface, edit->patches, edit->starts), *edit, node_valences(fine.surface),
                                            boundary_nodes(fine.surface));
       PatchedSurface nodes_alone = fine.surface;
       change_layout(nodes_alone, *edit);
@@ -165,9 +165,10 @@ TEST(BaseMap, IsBijectiveAndCarriedToEveryVertex) {
     options.levels.resize(1);
     options.levels[0].quads = 44;
     options.levels[0].vertices = 30.0 * base.quads();
-    BaseMap found = map_to_base(surface, base, options, Progress(context));
-    ASSERT_EQ(found.levels.size(), 1u);
-    LevelMap& map = found.levels[0];
+    Found<BaseMap> mapped = map_to_base(surface, base, options, Progress(context));
+    ASSERT_TRUE(mapped) << mapped.reason;
+    ASSERT_EQ(mapped->levels.size(), 1u);
+    LevelMap& map = mapped->levels[0];
     EXPECT_LE(map.layout.patch_count(), 44);
     EXPECT_GE(map.layout.patch_count(), base.quads());
     testing::expect_bijective(map.charts);
@@ -315,14 +316,17 @@ TEST(LayoutSearch, GrowsSkinOnFinerLevels) {
   level.vertices = 1500;
   level.map.vertices_a_quad = 150;
   LayoutSearchOptions options{{level}};
-  const BaseMap without = map_to_base(surface, base, options, Progress(context));
+  Found<BaseMap> without = map_to_base(surface, base, options, Progress(context));
   level.vertices = 3000;
   level.quads = 130;
   options.levels.insert(options.levels.end(), 2, level);
   options.levels.back().threshold = 0.5;
   options.levels.back().rounds = 2;
-  EXPECT_EQ(without.levels.size(), 1u);
-  BaseMap found = map_to_base(surface, base, options, Progress(context));
+  ASSERT_TRUE(without) << without.reason;
+  EXPECT_EQ(without->levels.size(), 1u);
+  Found<BaseMap> mapped = map_to_base(surface, base, options, Progress(context));
+  ASSERT_TRUE(mapped) << mapped.reason;
+  BaseMap& found = *mapped;
   ASSERT_EQ(found.script.levels.size(), 3u);
   EXPECT_TRUE(found.script.levels[0].edits.empty());
   EXPECT_TRUE(found.script.levels[1].edits.empty());

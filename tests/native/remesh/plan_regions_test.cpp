@@ -180,14 +180,14 @@ TEST_F(PatternRegions, WhatDoesNotFitIsRefusedWithItsPlace) {
                         [](Json& o) {
                           o["new_quads"] = {{0, 1, 2, 1}, {4, 5, 0, 1}};
                         })},
-      {"disk", changed(cubes,
-                       [](Json& o) {
-                         o["quads"] = {"1.0.2", "1.2.0"};
-                       })},
-      {"disk", changed(cubes,
-                       [](Json& o) {
-                         o["quads"] = {"1.0.2", "1.0.2"};
-                       })},
+      {"touch itself", changed(cubes,
+                               [](Json& o) {
+                                 o["quads"] = {"1.0.2", "1.2.0"};
+                               })},
+      {"quad 1.0.2 twice", changed(cubes,
+                                   [](Json& o) {
+                                     o["quads"] = {"1.0.2", "1.0.2"};
+                                   })},
       {"level 2 has no quad 1.0", changed(cubes, [](Json& o) { o["quads"] = {"1.0"}; })},
       {"corner 0 would have 8 quads", changed(turned,
                                               [](Json& o) {

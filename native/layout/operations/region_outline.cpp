@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/operations/region_outline.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "layout/drawn/boundary_loop.h"
+#include "layout/regions/disk_drawing.h"
+
+namespace hybrid_mesh {
+namespace {
+
+// The region cut out, and the points at its corners.
+struct RegionPart {
+  TriangleSurface mesh;
+  std::vector<int> corners;
+};
+
+RegionPart cut_out(const PatchedSurface& surface, const PatchRegion& region) {
+  PatchedPart part = part_of(surface, region.patches);
+  RegionPart out;
+  for (const PatchSide& s : region.boundary) {
+    const auto patch = std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin();
+    out.corners.push_back(part.surface.sides[patch][s.side].front());
+  }
+  out.mesh = std::move(part.surface.mesh);
+  return out;
+}
+
+// Shortest ways along edges to one vertex.
+class EdgeWays {
+ public:
+  EdgeWays(const TriangleSurface& mesh, int to) : mesh_(mesh), distance_(edge_distances(mesh, {to})), beside_(mesh.points.size()) {
+    for (const auto& f : mesh.faces)
+      for (int i = 0; i < 3; ++i) {
+        beside_[f[i]].push_back(f[(i + 1) % 3]);
+        beside_[f[(i + 1) % 3]].push_back(f[i]);
+      }
+  }
+  std::vector<Vec3> from(int v) const {
+    std::vector<Vec3> way{mesh_.points[v]};
+    while (distance_[v] > 0) {
+      const int next = *std::min_element(beside_[v].begin(), beside_[v].end(), [&](int a, int b) { return through(v, a) < through(v, b); });
+      if (!(distance_[next] < distance_[v])) break;
+      way.push_back(mesh_.points[v = next]);
+    }
+    return way;
+  }
+
+ private:
+  std::pair<double, int> through(int v, int next) const { return {distance_[next] + (mesh_.points[next] - mesh_.points[v]).norm(), next}; }
+
+  const TriangleSurface& mesh_;
+  std::vector<double> distance_;
+  std::vector<std::vector<int>> beside_;
+};
+
+// The point at a fraction of a line's length.
+Vec3 point_along(const std::vector<Vec3>& line, double fraction) {
+  double length = 0;
+  for (std::size_t k = 1; k < line.size(); ++k) length += (line[k] - line[k - 1]).norm();
+  double left = fraction * length;
+  for (std::size_t k = 1; k < line.size(); ++k) {
+    const double step = (line[k] - line[k - 1]).norm();
+    if (left <= step && step > 0) return line[k - 1] + left / step * (line[k] - line[k - 1]);
+    left -= step;
+  }
+  return line.back();
+}
+
+std::vector<Vec3> points_at(const RegionPart& part) {
+  std::vector<Vec3> points;
+  for (const int v : part.corners) points.push_back(part.mesh.points[v]);
+  return points;
+}
+
+// The boundary loop without corners, if there is one.
+const BoundaryLoop* open_loop(const std::vector<BoundaryLoop>& loops, const std::vector<int>& corners) {
+  for (const BoundaryLoop& loop : loops) {
+    bool any = false;
+    for (int i = 0; i < loop.size(); ++i) any |= std::find(corners.begin(), corners.end(), loop.vertex(i)) != corners.end();
+    if (!any) return &loop;
+  }
+  return nullptr;
+}
+
+// Even places on a loop that runs the other way around than the corners, as near to them as can be.
+std::vector<double> opposite_arcs(const BoundaryLoop& loop, const std::vector<Vec3>& corners) {
+  constexpr int tries = 64;
+  const int n = static_cast<int>(corners.size());
+  const auto place = [&](double first, int i) {
+    const double arc = first - i * loop.length() / n;
+    return arc - std::floor(arc / loop.length()) * loop.length();
+  };
+  double best = std::numeric_limits<double>::infinity(), begin = 0;
+  for (int k = 0; k < tries; ++k) {
+    const double first = k * loop.length() / tries;
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += (loop.at(place(first, i)) - corners[i]).squaredNorm();
+    if (sum < best) best = sum, begin = first;
+  }
+  std::vector<double> arcs;
+  for (int i = 0; i < n; ++i) arcs.push_back(place(begin, i));
+  return arcs;
+}
+
+int vertex_before(const BoundaryLoop& loop, double arc) {
+  int i = 0;
+  while (i + 1 < loop.size() && loop.arc(i + 1) <= arc) ++i;
+  return loop.vertex(i);
+}
+
+// Springs along the quads' sides pull the nodes that have no place yet.
+void spread(const std::vector<std::array<int, 4>>& quads, std::vector<Vec3>& nodes, const std::vector<char>& placed) {
+  std::vector<int> number(nodes.size(), -1);
+  int free = 0;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (!placed[n]) number[n] = free++;
+  if (free == 0) return;
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(free, 3);
+  for (const auto& quad : quads)
+    for (int i = 0; i < 4; ++i)
+      for (const int other : {quad[(i + 1) % 4], quad[(i + 3) % 4]}) {
+        const int k = number[quad[i]];
+        if (k < 0) continue;
+        entries.emplace_back(k, k, 1.0);
+        if (number[other] >= 0)
+          entries.emplace_back(k, number[other], -1.0);
+        else
+          right.row(k) += nodes[other].transpose();
+      }
+  Eigen::SparseMatrix<double> matrix(free, free);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  const Eigen::MatrixXd at = solver.solve(right);
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (number[n] >= 0) nodes[n] = at.row(number[n]).transpose();
+}
+
+}  // namespace
+
+LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region) {
+  constexpr std::size_t parts = 4;
+  LayoutOutline outline;
+  outline.quads = drawn.edit.quads;
+  outline.nodes.resize(region.corners.size() + drawn.edit.inner_nodes);
+  outline.sides.resize(outline.quads.size());
+  for (std::size_t q = 0; q < outline.quads.size(); ++q)
+    for (int i = 0; i < 4; ++i) {
+      const std::vector<int>& side = drawn.piece.sides[q][i];
+      const auto at = [&](std::size_t k) { return drawn.piece.mesh.points[side[k]]; };
+      outline.nodes[outline.quads[q][i]] = at(0);
+      const std::size_t last = side.size() - 1, count = std::min(parts, last);
+      // Each line once; the boundary's is known.
+      if (outline.quads[q][i] > outline.quads[q][(i + 1) % 4]) continue;
+      for (std::size_t k = 0; k <= count; ++k) outline.sides[q][i].push_back(at(k * last / count));
+    }
+  return outline;
+}
+
+LayoutOutline spread_outline(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit,
+                             const std::vector<std::vector<int>>& spokes) {
+  const RegionPart part = cut_out(surface, region);
+  const int corners = static_cast<int>(part.corners.size());
+  LayoutOutline outline;
+  outline.quads = edit.quads;
+  outline.nodes = points_at(part);
+  outline.nodes.resize(corners + edit.inner_nodes, Vec3::Zero());
+  std::vector<char> placed(outline.nodes.size(), 0);
+  std::fill(placed.begin(), placed.begin() + corners, 1);
+  const std::vector<BoundaryLoop> loops = boundary_loops(part.mesh);
+  const BoundaryLoop* loop = open_loop(loops, part.corners);
+  std::vector<double> opposite;
+  if (loop) opposite = opposite_arcs(*loop, points_at(part));
+  for (const std::vector<int>& spoke : spokes) {
+    const bool open = spoke.back() >= corners;
+    if (open && !loop) continue;
+    const int end = open ? vertex_before(*loop, opposite[spoke.front()]) : part.corners[spoke.back()];
+    std::vector<Vec3> way = EdgeWays(part.mesh, end).from(part.corners[spoke.front()]);
+    if (open) way.push_back(loop->at(opposite[spoke.front()]));
+    for (std::size_t i = 1; i < spoke.size(); ++i) {
+      if (spoke[i] < corners) continue;
+      outline.nodes[spoke[i]] = point_along(way, static_cast<double>(i) / static_cast<double>(spoke.size() - 1));
+      placed[spoke[i]] = 1;
+    }
+  }
+  spread(edit.quads, outline.nodes, placed);
+  return outline;
+}
+
+PatchedSurface lay_out_region(const PatchedSurface& surface, LayoutOutline outline, const PatchRegion& region, const Progress& progress) {
+  const RegionPart part = cut_out(surface, region);
+  for (std::size_t k = 0; k < part.corners.size(); ++k) outline.nodes[k] = part.mesh.points[part.corners[k]];
+  const TransferredLayout laid = transfer_layout(part.mesh, outline, progress);
+  return laid.failure.empty() ? to_patched_surface(laid.layout) : PatchedSurface();
+}
+
+RowsPlace place_rows(const PatchedSurface& surface, const PatchRegion& region) {
+  const RegionPart part = cut_out(surface, region);
+  const std::vector<Vec3> points = points_at(part);
+  const int n = region.rims[1], m = static_cast<int>(points.size()) - n;
+  double side = 0;
+  for (int k = 0; k < n; ++k) side += (points[region.next(k)] - points[k]).norm() / n;
+  RowsPlace out;
+  // Corners of the first rim beside those of the second that are joined to them.
+  double least = std::numeric_limits<double>::infinity();
+  for (int shift = 0; shift < m; ++shift) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) {
+      const int j = shift - static_cast<int>(std::lround(static_cast<double>(i) * m / n));
+      sum += (points[n + (j % m + m) % m] - points[i]).squaredNorm();
+    }
+    if (sum < least) least = sum, out.shift = shift;
+  }
+  // How far the boundaries are apart, on average over the first one's corners.
+  std::vector<int> second(part.corners.begin() + n, part.corners.end());
+  if (m == 0) {
+    const std::vector<BoundaryLoop> loops = boundary_loops(part.mesh);
+    const BoundaryLoop* loop = open_loop(loops, part.corners);
+    for (int i = 0; loop && i < loop->size(); ++i) second.push_back(loop->vertex(i));
+  }
+  const std::vector<double> distance = edge_distances(part.mesh, second);
+  double mean = 0;
+  for (int k = 0; k < n; ++k) mean += distance[part.corners[k]] / n;
+  out.rows = std::max(1, static_cast<int>(std::lround(mean / std::max(side, 1e-300))));
+  return out;
+}
+
+}  // namespace hybrid_mesh
