@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "parameterization/patched_surface.h"
 #include "surface/edit_mesh.h"
@@ -74,23 +73,6 @@ double area_of(const TriangleSurface& surface) {
   return area;
 }
 
-// The part of the area that lies in triangles with an angle below this one.
-double needle_share(const TriangleSurface& surface, double degrees) {
-  const double most_cosine = std::cos(degrees * std::numbers::pi / 180);
-  double all = 0, needles = 0;
-  for (const auto& face : surface.faces) {
-    double area = 0, cosine = -1;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 a = surface.points[face[(i + 1) % 3]] - surface.points[face[i]], b = surface.points[face[(i + 2) % 3]] - surface.points[face[i]];
-      area = 0.5 * a.cross(b).norm();
-      cosine = std::max(cosine, a.dot(b) / (a.norm() * b.norm()));
-    }
-    all += area;
-    if (!(cosine <= most_cosine)) needles += area;
-  }
-  return all > 0 ? needles / all : 0;
-}
-
 }  // namespace
 
 void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired) const {
@@ -123,14 +105,14 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
                                     const WorkingSizes& sizes) {
   TriangleSurface placed = repaired;
   for (Vec3& p : placed.points) p = placement.to_unit(p);
-  const double edge = std::sqrt(4 / std::sqrt(3.0) * area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces)));
+  const double triangle = area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
+  const double edge = std::sqrt(4 / std::sqrt(3.0) * triangle);
   WellShapedOptions options;
   options.longest_edge = sizes.longest * edge;
   options.shortest_edge = sizes.shortest * edge;
   options.collapsible = sizes.collapsible * edge;
   options.tolerance = std::min(sizes.tolerance * edge, sizes.most_tolerance);
-  // Without needles only sizes are seen to: nothing moves, and every face lies on one of the repaired surface.
-  if (needle_share(placed, sizes.needle_angle) < sizes.needles) options.least_angle = options.least_bent_angle = options.tolerance = 0;
+  options.needles.area = sizes.needle_triangles * triangle;
   WellShaped shaped = make_well_shaped(placed, options, progress);
   WorkingSurface w;
   w.mesh = std::move(shaped.mesh);

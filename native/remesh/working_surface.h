@@ -13,7 +13,8 @@
 
 namespace hybrid_mesh {
 
-// The surface on which the base domain and the maps are built: the repaired one, placed, in well-shaped triangles of the size that is asked for.
+// The surface on which the base domain and the maps are built: the repaired one, placed, in triangles of at most the size that is asked for, well
+// shaped where machine parts have needles. A scan's thin triangles follow its shape: mending them makes the fit worse.
 struct WorkingSurface {
   TriangleSurface mesh;             // source_face: face of the repaired surface that the face lies on, or mostly if it lies on several
   std::vector<SurfacePoint> place;  // per point, on the repaired surface
@@ -33,10 +34,8 @@ struct WorkingSizes {
   double collapsible = 0.5;      // well below the longest: what is collapsed is not split again
   double tolerance = 0.002;      // distance that the surface may move: far below the error that quads of that size have
   double most_tolerance = 3e-5;  // the same as a fraction of the diagonal, for the coarsest meshes
-  // Triangles are made well shaped where at least this part of the area lies in needles, triangles with a smaller angle than this (degrees): in the
-  // flat and bent faces of machine parts. A scan's thin triangles follow its shape, and the fit is the worse without them (measured on scans with up
-  // to .013 of needles: by an eighth).
-  double needles = 0.06, needle_angle = 5;
+  // Needles are mended that cover together so many times the area of an equal triangle: within one, a map can do without.
+  double needle_triangles = 32;
 };
 
 // `faces` says how large its triangles are to be, not how many there are: equal ones of that number would be as large. Where the repaired surface's

@@ -40,6 +40,7 @@ GuardedMesh::GuardedMesh(const TriangleSurface& input, const GuardOptions& optio
       mesh_(input),
       points_(input.points),
       place_(input.points.size()),
+      released_(input.faces.size(), 0),
       moved_(input.faces.size(), 0),
       inside_(input.faces.size()),
       passed_(mesh_.edge_count) {
@@ -85,7 +86,7 @@ bool GuardedMesh::is_curve(int h) const {
   const Vec3 m = area_vector(h / 3), n = area_vector(o / 3);
   const double a = m.norm(), b = n.norm();
   if (m.dot(n) >= sharp_cosine_ * a * b) return false;
-  return std::min(a, b) > options_.tolerance * length(h);
+  return std::min(a, b) > tolerance_at(h) * length(h);
 }
 
 double GuardedMesh::distance_to_input(const Vec3& p, int guess) const { return std::sqrt(query_.closest(p, guess).squared_distance); }
@@ -98,18 +99,19 @@ bool GuardedMesh::flip(int h) {
   if (!(std::min(smallest_angle_of(a, d, c), smallest_angle_of(d, b, c)) > kGain * before)) return false;
   const double moves = bulge(h);
   // Both surfaces would be within the tolerance of the input. A fold bulges nowhere.
-  if (moves > 2 * options_.tolerance || is_curve(h)) return false;
+  const double tolerance = tolerance_at(h);
+  if (moves > 2 * tolerance || is_curve(h)) return false;
   const Vec3 up = area_vector(h / 3) + area_vector(o / 3);
   if (!(area_vector(a, d, c).dot(up) > 0 && area_vector(d, b, c).dot(up) > 0)) return false;
   if (!mesh_.can_flip(h)) return false;
   double moved = std::max(moved_[h / 3], moved_[o / 3]) + moves;
-  if (moved > options_.tolerance) {
+  if (moved > tolerance) {
     moved = 0;
     const int guess = place_[mesh_.from(h)].face;
     constexpr int parts = 8;
     for (int k = 1; k < parts; ++k) moved = std::max(moved, distance_to_input(c + (d - c) * (static_cast<double>(k) / parts), guess));
     for (const Vec3& p : {a, b}) moved = std::max(moved, distance_to_input((c + d + p) / 3, guess));
-    if (moved > options_.tolerance) return false;
+    if (moved > tolerance) return false;
   }
   mesh_.flip(h);
   moved_[h / 3] = moved_[o / 3] = moved;
@@ -143,6 +145,7 @@ bool GuardedMesh::gather(int h, Star& star) const {
   int sector = 0;
   for (int g = h;;) {
     const int f = g / 3;
+    if (!released_[f]) return false;
     star.up[sector] += area_vector(f);
     star.before = std::min(star.before, smallest_angle(f));
     star.moved = std::max(star.moved, moved_[f]);
@@ -261,6 +264,7 @@ int GuardedMesh::split(int h, double fraction) {
     moved_[g / 3] += off_edge;
     moved_.push_back(moved_[g / 3]);
     inside_.push_back(inside_[g / 3]);
+    released_.push_back(released_[g / 3]);
   }
   for (const Vec3& x : passed)
     if (x != at) passed_[(x - p).dot(d) < (at - p).dot(d) ? name : beyond].push_back(x);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "surface/closest_point.h"
@@ -11,13 +12,14 @@
 namespace hybrid_mesh {
 
 struct GuardOptions {
-  double tolerance = 1e-5;  // distance that the surface may move
+  double tolerance = 1e-5;  // distance that the surface may move where it may, see release()
   double sharp_angle = 30;  // degrees between the normals of two faces from which their edge is a feature
 };
 
 // A triangle mesh whose flips, collapses and splits are done only where they leave the surface within a tolerance of the one it was made from,
 // however many there are: each face knows a bound of its distance to that surface, to which an operation adds what it moves; where the bound has run
 // out, the distance is measured anew. Curves (boundaries and sharp edges) are held in the same way by the points that were taken out of them.
+// Faces are held, until they are released: each remains, whole or in parts, a face of the input.
 class GuardedMesh {
  public:
   GuardedMesh(const TriangleSurface& input, const GuardOptions& options);
@@ -35,12 +37,15 @@ class GuardedMesh {
   double smallest_angle(int f) const { return corner_angle(smallest_corner(f)); }
   int smallest_corner(int f) const { return EditMesh::prev(shortest(f)); }
   double corner_angle(int h) const;  // at from(h)
+  // Flips and collapses may move these faces, and what they are split into; `released` has a mark per face of the input.
+  void release(std::vector<char> released) { released_ = std::move(released); }
+  bool is_released(int f) const { return released_[f]; }
   // How far the surface would move if the edge were flipped; 0 at a boundary.
   double bulge(int h) const;
   // A boundary, or a sharp edge between faces that are not just rounding.
   bool is_curve(int h) const;
   // Could no flip remove it, whatever the shape of the triangles?
-  bool is_held(int h) const { return bulge(h) > options_.tolerance || is_curve(h); }
+  bool is_held(int h) const { return bulge(h) > tolerance_at(h) || is_curve(h); }
 
   // Flips the edge if that makes the smaller of the smallest angles larger.
   bool flip(int h);
@@ -63,7 +68,10 @@ class GuardedMesh {
   Vec3 area_vector(int f) const {
     return area_vector(points_[mesh_.origin[3 * f]], points_[mesh_.origin[3 * f + 1]], points_[mesh_.origin[3 * f + 2]]);
   }
-  void add_names();
+  // What a flip of the edge may move.
+  double tolerance_at(int h) const {
+    return released_[h / 3] && (mesh_.opposite[h] < 0 || released_[mesh_.opposite[h] / 3]) ? options_.tolerance : 0;
+  }
 
   GuardOptions options_;
   double sharp_cosine_;
@@ -72,6 +80,7 @@ class GuardedMesh {
   EditMesh mesh_;
   std::vector<Vec3> points_;
   std::vector<SurfacePoint> place_;
+  std::vector<char> released_;             // per face
   std::vector<double> moved_;              // per face: a bound of its distance to the input
   std::vector<int> inside_;                // per face: face of the input that it lies in, -1: not in one
   std::vector<std::vector<Vec3>> passed_;  // per edge name: points of the curve that were taken out of it

@@ -24,7 +24,10 @@ class Shaping {
         progress_(progress),
         mesh_(input, {options.tolerance, options.sharp_angle}),
         least_angle_(radians(options.least_angle)),
-        stamp_(input.faces.size(), 0) {}
+        stamp_(input.faces.size(), 0) {
+    mesh_.release(std::vector<char>(input.faces.size(), 1));
+    mesh_.release(needle_regions(mesh_, options.needles));
+  }
 
   void run() {
     flip_bad();
@@ -44,7 +47,7 @@ class Shaping {
   };
 
   bool alive(int f) const { return mesh_.mesh().alive[f]; }
-  bool is_thin(int f) const { return mesh_.smallest_angle(f) < least_angle_; }
+  bool is_thin(int f) const { return mesh_.is_released(f) && mesh_.smallest_angle(f) < least_angle_; }
   void touch(int f) {
     stamp_.resize(mesh_.face_count(), 0);
     ++stamp_[f];
@@ -115,6 +118,7 @@ class Shaping {
   // --- refinement ----------------------------------------------------------------------------------------------------------------
   bool is_bad(int f) const {
     if (mesh_.length(mesh_.longest(f)) > options_.longest_edge) return true;
+    if (!mesh_.is_released(f)) return false;
     const int corner = mesh_.smallest_corner(f);
     const double angle = mesh_.corner_angle(corner);
     if (angle >= least_angle_) return false;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "surface/needle_regions.h"
 #include "surface/triangle_surface.h"
 
 namespace hybrid_mesh {
@@ -19,6 +20,7 @@ struct WellShapedOptions {
   // The same beside edges that are held because the surface bends there: the strips of a tube or fillet, of which there may be many.
   double least_bent_angle = 12;
   double sharp_angle = 30;             // degrees between normals; such edges are features, whose points move along them only
+  NeedleOptions needles;               // where triangles are mended
   double small_corner = 60;            // degrees; where features meet at less, their splits keep the same distances from the corner
   std::int64_t most_points = 1000000;  // no point is added beyond
 };
@@ -29,10 +31,11 @@ struct WellShaped {
   bool unchanged = false;           // points and faces are the input's, in its order
 };
 
-// A triangulation of the same surface, within the tolerance, whose triangles are well shaped and not too large. Where the input's triangles are, they
-// are left alone. Edges are flipped and collapsed where that moves the surface by no more than the tolerance, measured against the input; what these
-// cannot mend is refined. Boundaries and sharp edges stay curves of edges. Angles below the least one are left where the input forces them (at a
-// corner between two edges that cannot be flipped) and where edges would get too short or points too many.
+// A triangulation of the same surface, within the tolerance, whose triangles are not too large, and well shaped where there are needles. Elsewhere
+// faces of the input stay as they are, or are split, and so do they where they are well shaped. There edges are flipped and collapsed where that
+// moves the surface by no more than the tolerance, measured against the input; what these cannot mend is refined. Boundaries and sharp edges stay
+// curves of edges. Angles below the least one are left where the input forces them (at a corner between two edges that cannot be flipped) and where
+// edges would get too short or points too many.
 WellShaped make_well_shaped(const TriangleSurface& input, const WellShapedOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh
