@@ -35,7 +35,7 @@ struct WorkingSizes {
   double tolerance = 0.002;      // distance that the surface may move: far below the error that quads of that size have
   double most_tolerance = 3e-5;  // the same as a fraction of the diagonal, for the coarsest meshes
   // Needles are mended that cover together so many times the area of an equal triangle: within one, a map can do without.
-  double needle_triangles = 32;
+  double needle_triangles = 16;
 };
 
 // `faces` says how large its triangles are to be, not how many there are: equal ones of that number would be as large. Where the repaired surface's

@@ -34,20 +34,21 @@ std::vector<char> needle_regions(const GuardedMesh& mesh, const NeedleOptions& o
   const std::vector<int>& opposite = mesh.mesh().opposite;
   std::vector<char> marked(faces, options.area <= 0);
   if (options.area <= 0) return marked;
-  std::vector<char> needle(faces, 0);
-  for (int f = 0; f < faces; ++f) needle[f] = !(mesh.smallest_angle(f) >= radians(options.angle)) && is_straight(mesh, f);
+  std::vector<char> thin(faces, 0);
+  for (int f = 0; f < faces; ++f) thin[f] = !(mesh.smallest_angle(f) >= radians(options.thin_angle)) && is_straight(mesh, f);
 
+  std::vector<char> open = thin;
   std::vector<int> queue, group;  // queue: marked faces
   for (int first = 0; first < faces; ++first) {
-    if (!needle[first]) continue;
+    if (!open[first]) continue;
     double area = 0;
     group = {first};
-    needle[first] = 0;
+    open[first] = 0;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      area += area_of(mesh, group[i]);
+      if (!(mesh.smallest_angle(group[i]) >= radians(options.angle))) area += area_of(mesh, group[i]);
       for (int h = 3 * group[i]; h < 3 * group[i] + 3; ++h)
-        if (const int o = opposite[h]; o >= 0 && needle[o / 3]) {
-          needle[o / 3] = 0;
+        if (const int o = opposite[h]; o >= 0 && open[o / 3]) {
+          open[o / 3] = 0;
           group.push_back(o / 3);
         }
     }
@@ -60,7 +61,7 @@ std::vector<char> needle_regions(const GuardedMesh& mesh, const NeedleOptions& o
     for (int h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
       const int o = opposite[h], f = o / 3;
       if (o < 0 || marked[f] || mesh.is_curve(h)) continue;
-      if (!is_flat(mesh, h, options.flatness) && !(mesh.smallest_angle(f) < radians(options.thin_angle) && is_straight(mesh, f))) continue;
+      if (!thin[f] && !is_flat(mesh, h, options.flatness)) continue;
       marked[f] = 1;
       queue.push_back(f);
     }
