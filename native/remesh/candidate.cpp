@@ -19,8 +19,6 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kRequests = 8;
-constexpr double kFacesAQuad = 30;  // of the surface that a base is laid out on, at least
-constexpr double kMostFaces = 2e6;  // ... but no more
 // A base of more quads than this has room for a ring around a feature that sticks out, so that it is sought of so many quads fewer.
 constexpr double kRoomyBase = 280;
 // The last triangles of a decimation are too few to choose quads from: below this size the base's is taken for the least.
@@ -30,13 +28,6 @@ constexpr double kSmallBase = 60;
 // few surfaces.
 int least_quads(const TopologySummary& topology) {
   return static_cast<int>(std::max(6.0 * topology.components, 12.0 * topology.genus) + 4.0 * topology.boundary_loops);
-}
-
-double area_of(const TriangleSurface& surface) {
-  double area = 0;
-  for (const auto& f : surface.faces)
-    area += 0.5 * (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
-  return area;
 }
 
 // Gives all quads of the construction's level their maps.
@@ -64,13 +55,11 @@ Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurfac
   return made;
 }
 
-Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request) {
+Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request, WorkingSurfaceInUse& in_use) {
   const RemeshOptions& options = task.options;
   Plan::Origin origin;
   origin.surface = task.source.fingerprint;
-  // As large as halves of the final quads, and small enough for the base to choose from.
-  origin.faces =
-      static_cast<std::int64_t>(std::min(std::max(kFacesAQuad * budget.base_size, 2.0 * static_cast<double>(budget.vertices)), kMostFaces));
+  origin.faces = working_faces(budget.base_size, budget.vertices);
   BaseDomainOptions& base_options = origin.base;
   base_options.size = budget.base_size;
   base_options.boundary_side = budget.boundary_side;
@@ -80,8 +69,8 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   }
   base_options.seed = request.seed;
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
-  WorkingSurface working;
-  const BaseDomain base = make_base(task, origin, working);
+  const BaseDomain base = make_base(task, origin, in_use);
+  const WorkingSurface& working = in_use.of_size(task, origin.faces);
   Found<BaseMap> map =
       map_to_base(working.mesh, base, layout_search_options(options, budget, task.source.topology, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
@@ -122,11 +111,20 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
   return names;
 }
 
-BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurface& working) {
+const WorkingSurface& WorkingSurfaceInUse::of_size(const RemeshTask& task, std::int64_t faces) {
+  if (faces != faces_) {
+    faces_ = -1;
+    surface_ = {};  // what it took is free for the next one
+    surface_ = make_working_surface(task.source.repaired, task.source.placement, faces, task.progress.part(0.05, 0.05));
+    faces_ = faces;
+  }
+  return surface_;
+}
+
+BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurfaceInUse& working) {
   task.progress.stage("base domain");
   task.watch.start("base");
-  working = make_working_surface(task.source.repaired, task.source.placement, origin.faces, task.progress.part(0.05, 0.05));
-  BaseDomain base(working.mesh, origin.base, task.progress.part(0.05, 0.15));
+  BaseDomain base(working.of_size(task, origin.faces).mesh, origin.base, task.progress.part(0.05, 0.15));
   task.progress.stage("map");
   task.watch.start("map");
   return base;
@@ -137,8 +135,9 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   Budget budget = plan_budget(options, task.source, target);
   std::string failure;
   std::int64_t least = -1;
+  WorkingSurfaceInUse working;
   for (const BaseRequest& request : requests) {
-    Found<Candidate> c = found([&] { return make_candidate(task, budget, request); });
+    Found<Candidate> c = found([&] { return make_candidate(task, budget, request, working); });
     if (!c) {
       failure = c.reason;
       continue;

@@ -66,8 +66,18 @@ using Operations = std::function<std::vector<Plan::Region>(Construction& made)>;
 Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
                              const Operations& operations);
 
-// The base domain that a plan's origin tells of, on the surface that `working` is made of it.
-BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurface& working);
+// A working surface that is made again only where another size of triangles is asked for.
+class WorkingSurfaceInUse {
+ public:
+  const WorkingSurface& of_size(const RemeshTask& task, std::int64_t faces);
+
+ private:
+  WorkingSurface surface_;
+  std::int64_t faces_ = -1;
+};
+
+// The base domain that a plan's origin tells of, on the surface of the size that it names.
+BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurfaceInUse& working);
 
 // The names of the inner vertices of a mesh where other than four faces meet, sorted.
 std::vector<VertexId> irregular_names(const QuadMesh& mesh);

@@ -166,9 +166,10 @@ LayoutEdit raw_edit(const PlanEntry& entry) {
 
 Plan::Origin origin_from_json(const PlanEntry& entry) {
   if (entry.has("boundary_nodes")) {
-    entry.only({"surface", "boundary_nodes", "cubes"});
+    entry.only({"surface", "faces", "boundary_nodes", "cubes"});
     Plan::Origin origin;
     origin.surface = entry.at("surface").text();
+    origin.faces = entry.at("faces").integer(0, std::numeric_limits<std::int64_t>::max());
     origin.tower = tower_from_json(entry);
     return origin;
   }

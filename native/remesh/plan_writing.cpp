@@ -73,6 +73,7 @@ Json origin_to_json(const Plan::Origin& origin) {
   if (origin.tower) {
     Json out = tower_to_json(*origin.tower);
     out["surface"] = origin.surface;
+    out["faces"] = origin.faces;
     return out;
   }
   Json rounds = Json::array();

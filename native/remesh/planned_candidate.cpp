@@ -11,7 +11,6 @@
 namespace hybrid_mesh {
 namespace {
 
-constexpr int kFacesAQuad = 30;  // of the surface that a base is laid out on, at least
 constexpr int kLikelyCubes = 8;  // of a tower whose height is left to the surface
 
 // A base's level, and then those that the plan has above it.
@@ -28,12 +27,18 @@ Operations operations_of(const RemeshTask& task, const Plan& plan) {
   };
 }
 
-Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, WorkingSurface& working) {
+// How large the triangles of the surface are that a base of so many quads is laid out on.
+std::int64_t faces_for(const RemeshTask& task, double base_quads) {
+  return working_faces(base_quads, plan_budget(task.options, task.source, {}).vertices);
+}
+
+double likely_quads(const BoundaryTower& tower) { return 4 * std::max(kLikelyCubes, tower.cubes) + 1; }
+
+Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, std::int64_t faces, WorkingSurfaceInUse& in_use) {
   const Placement& placement = task.source.placement;
   task.progress.stage("base domain");
   task.watch.start("base");
-  working = make_working_surface(task.source.repaired, placement, kFacesAQuad * (4 * std::max(kLikelyCubes, tower.cubes) + 1),
-                                 task.progress.part(0.05, 0.05));
+  const WorkingSurface& working = in_use.of_size(task, faces);
   for (Vec3& p : tower.nodes) p = placement.to_unit(p);
   Found<PatchedSurface> base = found([&] { return grow_boundary_tower(working.mesh, tower, task.progress.part(0.05, 0.2)); });
   if (!base) return {std::nullopt, base.reason};
@@ -50,11 +55,13 @@ Found<Candidate> assembled(const RemeshTask& task, const WorkingSurface& working
 
 // A base on four points of the boundary. From then on the plan has its quads.
 Candidate grow(const RemeshTask& task, const Plan& plan) {
-  WorkingSurface working;
   Plan::Origin origin;
   origin.surface = task.source.fingerprint;
   origin.tower = plan.tower;
-  Found<Candidate> grown = assembled(task, working, map_to_tower(task, *plan.tower, plan, working), origin, plan);
+  origin.faces = faces_for(task, likely_quads(*plan.tower));
+  WorkingSurfaceInUse working;
+  Found<BaseMap> map = map_to_tower(task, *plan.tower, plan, origin.faces, working);
+  Found<Candidate> grown = assembled(task, working.of_size(task, origin.faces), std::move(map), origin, plan);
   if (!grown) throw Error(ErrorCode::Unsupported, "no map to a chain of cubes on the boundary is found: " + grown.reason);
   return std::move(*grown);
 }
@@ -62,16 +69,17 @@ Candidate grow(const RemeshTask& task, const Plan& plan) {
 // As it was made on the surface that the plan was made on; nothing if this is another one, or the base was changed by hand.
 std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   if (!plan.origin || plan.origin->surface != task.source.fingerprint) return std::nullopt;
-  WorkingSurface working;
+  WorkingSurfaceInUse working;
+  const std::int64_t faces = plan.origin->faces;
   Found<BaseMap> map;
   if (plan.origin->tower) {
-    map = map_to_tower(task, *plan.origin->tower, plan, working);
+    map = map_to_tower(task, *plan.origin->tower, plan, faces, working);
   } else {
     const Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
     if (!base) return std::nullopt;
-    map = map_to_base(working.mesh, *base.value, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
+    map = map_to_base(working.of_size(task, faces).mesh, *base.value, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
   }
-  Found<Candidate> c = assembled(task, working, std::move(map), plan.origin, plan);
+  Found<Candidate> c = assembled(task, working.of_size(task, faces), std::move(map), plan.origin, plan);
   if (!c) return std::nullopt;
   const LayoutOutline made = plan_from_json(c->plan).base;
   if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;
@@ -82,8 +90,8 @@ Candidate lay_out(const RemeshTask& task, const Plan& plan) {
   const Placement& placement = task.source.placement;
   task.progress.stage("base domain");
   task.watch.start("base");
-  const WorkingSurface working = make_working_surface(
-      task.source.repaired, placement, kFacesAQuad * static_cast<std::int64_t>(plan.base.quads.size()), task.progress.part(0.05, 0.05));
+  WorkingSurfaceInUse in_use;
+  const WorkingSurface& working = in_use.of_size(task, faces_for(task, static_cast<double>(plan.base.quads.size())));
   LayoutOutline outline = plan.base;
   const auto to_unit = [&](const Vec3& p) { return placement.to_unit(p); };
   move_outline(outline, to_unit);

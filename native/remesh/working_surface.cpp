@@ -66,14 +66,20 @@ Weights weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
   return w;
 }
 
+}  // namespace
+
+std::int64_t working_faces(double base_quads, std::int64_t vertices) {
+  constexpr double faces_a_base_quad = 30;  // at least
+  constexpr double most = 2e6;              // ... but no more
+  return static_cast<std::int64_t>(std::min(std::max(faces_a_base_quad * base_quads, 2.0 * static_cast<double>(vertices)), most));
+}
+
 double area_of(const TriangleSurface& surface) {
   double area = 0;
   for (const auto& [a, b, c] : surface.faces)
     area += 0.5 * (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm();
   return area;
 }
-
-}  // namespace
 
 void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired) const {
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {

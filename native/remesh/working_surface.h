@@ -38,7 +38,13 @@ struct WorkingSizes {
   double needle_triangles = 16;
 };
 
-// `faces` says how large its triangles are to be, not how many there are: equal ones of that number would be as large. Where the repaired surface's
+// How large the triangles are to be for a mesh with so many vertices above a base of so many quads: as large as halves of the final quads, and small
+// enough for the base to choose from. In numbers of equal triangles on the same area.
+std::int64_t working_faces(double base_quads, std::int64_t vertices);
+
+double area_of(const TriangleSurface& surface);
+
+// `faces`: see working_faces(). Where the repaired surface's
 // are smaller, they stay.
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
                                     const WorkingSizes& sizes = WorkingSizes());
