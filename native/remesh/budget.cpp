@@ -10,6 +10,8 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kMostPlannedLevels = 6;  // above a base whose size is free: more would leave it a few quads
+// What is around a rod of unit length is its area long, and so many quads of a base at least belong there: of fewer than three none could be square.
+constexpr double kQuadsAround = 3.5;
 
 }  // namespace
 
@@ -26,7 +28,9 @@ Budget plan_budget(const RemeshOptions& options, const Source& source, const Tar
   // Roughly what the topology asks for at least.
   const TopologySummary& topology = source.topology;
   const double least = 6.0 * topology.components + 8 * topology.genus + 2.6 * topology.boundary_loops;
-  const double enough = std::max(std::clamp(static_cast<double>(b.vertices) / 64, 20.0, 150.0), std::min(1.7 * least, b.vertices / 4.0));
+  const double for_rods = kQuadsAround * kQuadsAround / source.area;
+  const double enough =
+      std::max(std::clamp(static_cast<double>(b.vertices) / 64, 20.0, 150.0), std::min(std::max(1.7 * least, for_rods), b.vertices / 4.0));
   if (options.levels >= 0 && options.refinement == Refinement::Uniform) {
     b.levels = options.levels;
   } else {

@@ -36,6 +36,7 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
     throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(source.repairs));
   source.topology = summarize_topology(to_soup(source.repaired));
   source.placement = placement_of(source.repaired.points);
+  source.area = area_of(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
   source.fingerprint = fingerprint(source.repaired);
   PolygonSoup unit = input;
   for (Vec3& p : unit.points) p = source.placement.to_unit(p);

@@ -19,6 +19,7 @@ struct Source {
   RepairReport repairs;
   TopologySummary topology;  // of `repaired`
   Placement placement;       // that brings it to unit size
+  double area = 0;           // of unit size
   std::string fingerprint;
   std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
 };
