@@ -124,6 +124,8 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   w.mesh = std::move(shaped.mesh);
   w.place = std::move(shaped.place);
   w.placement = placement;
+  const bool has_boundary = std::find(placed.opposite.begin(), placed.opposite.end(), -1) != placed.opposite.end();
+  if (shaped.unchanged && !has_boundary) return w;  // every face is one of the repaired surface
   w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
   split_chords(w);
   return w;

@@ -24,7 +24,7 @@ struct WorkingSurface {
   void to_repaired(PatchMap& map, const TriangleSurface& repaired) const;
 
   Placement placement;
-  std::shared_ptr<const SurfaceDistanceQuery> query;  // of the placed repaired surface
+  std::shared_ptr<const SurfaceDistanceQuery> query;  // of the placed repaired surface; none where the faces are its own
 };
 
 // How long the edges of a working surface are, as fractions of those of the given number of equal equilateral triangles on the same area.

@@ -36,7 +36,6 @@ GuardedMesh::GuardedMesh(const TriangleSurface& input, const GuardOptions& optio
     : options_(options),
       sharp_cosine_(std::cos(options.sharp_angle * std::numbers::pi / 180)),
       input_(input),
-      query_(input),
       mesh_(input),
       points_(input.points),
       place_(input.points.size()),
@@ -89,7 +88,7 @@ bool GuardedMesh::is_curve(int h) const {
   return std::min(a, b) > tolerance_at(h) * length(h);
 }
 
-double GuardedMesh::distance_to_input(const Vec3& p, int guess) const { return std::sqrt(query_.closest(p, guess).squared_distance); }
+double GuardedMesh::distance_to_input(const Vec3& p, int guess) const { return std::sqrt(query().closest(p, guess).squared_distance); }
 
 bool GuardedMesh::flip(int h) {
   const int o = mesh_.opposite[h];
@@ -245,7 +244,7 @@ int GuardedMesh::split(int h, double fraction) {
     constexpr double near = 0.2;  // a rather even split is worth more than a point that was there before
     if (off(nearest) < near) at = nearest;
   }
-  const ClosestPoint closest = query_.closest(at, place_[a].face);
+  const ClosestPoint closest = query().closest(at, place_[a].face);
   const double moves = std::sqrt(closest.squared_distance);
   constexpr double rounding = 1e-13;
   if (moves > rounding) {
@@ -285,7 +284,7 @@ TriangleSurface GuardedMesh::packed(std::vector<SurfacePoint>& place) const {
     if (!mesh_.alive[f]) continue;
     const int a = mesh_.origin[3 * f], b = mesh_.origin[3 * f + 1], c = mesh_.origin[3 * f + 2];
     surface.faces.push_back({number[a], number[b], number[c]});
-    surface.source_face.push_back(inside_[f] >= 0 ? inside_[f] : query_.closest((points_[a] + points_[b] + points_[c]) / 3, place_[a].face).face);
+    surface.source_face.push_back(inside_[f] >= 0 ? inside_[f] : query().closest((points_[a] + points_[b] + points_[c]) / 3, place_[a].face).face);
   }
   connect_half_edges(surface);
   return surface;

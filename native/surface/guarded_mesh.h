@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,8 @@ class GuardedMesh {
   Vec3 area_vector(int f) const {
     return area_vector(points_[mesh_.origin[3 * f]], points_[mesh_.origin[3 * f + 1]], points_[mesh_.origin[3 * f + 2]]);
   }
+  // Made when it is first asked for: where nothing is done, which is usual for scans, it would take most of the time.
+  const SurfaceDistanceQuery& query() const { return query_ ? *query_ : query_.emplace(input_); }
   // What a flip of the edge may move.
   double tolerance_at(int h) const {
     return released_[h / 3] && (mesh_.opposite[h] < 0 || released_[mesh_.opposite[h] / 3]) ? options_.tolerance : 0;
@@ -76,7 +79,7 @@ class GuardedMesh {
   GuardOptions options_;
   double sharp_cosine_;
   const TriangleSurface& input_;
-  SurfaceDistanceQuery query_;
+  mutable std::optional<SurfaceDistanceQuery> query_;  // see query()
   EditMesh mesh_;
   std::vector<Vec3> points_;
   std::vector<SurfacePoint> place_;

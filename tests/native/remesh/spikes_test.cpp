@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -59,6 +60,14 @@ PolygonSoup rod() {
   });
 }
 
+// Of 60 times its width and nothing else.
+PolygonSoup bare_rod() {
+  return grid(400, 20, false, [](int i, int j) {
+    const double a = 2 * std::numbers::pi * j / 20, end = std::min({1.0, (i + 1) / 6.0, (400 - i) / 6.0});
+    return Vec3(0.5 * end * std::cos(a), 0.5 * end * std::sin(a), 60.0 * i / 399);
+  });
+}
+
 // Pulls a point out along a direction where it is near a foot.
 Vec3 pulled(const Vec3& p, const Vec3& foot, const Vec3& direction) {
   return p + 1.5 * std::exp(-(p - foot).squaredNorm() / (0.06 * 0.06)) * direction;
@@ -96,6 +105,16 @@ void expect_kept(const PolygonSoup& soup) {
 TEST(Spikes, ARodIsKept) { expect_kept(rod()); }
 TEST(Spikes, OneOnATorusIsKept) { expect_kept(torus_with_a_spike()); }
 TEST(Spikes, TwoSideBySideAreKept) { expect_kept(two_spikes()); }
+
+// A base that has too few quads to go around would shear all of them.
+TEST(Spikes, ABareRodHasSquareQuads) {
+  RemeshOptions options;
+  options.vertices = 3000;
+  Context context;
+  const RemeshResult r = remesh(bare_rod(), options, context);
+  testing::expect_sound(r);
+  EXPECT_GE(r.report["final"]["scaled_jacobian"]["p50"].get<double>(), 0.9);
+}
 
 }  // namespace
 }  // namespace hybrid_mesh

@@ -114,7 +114,9 @@ TEST(WorkingSurface, MendsNeedlesWhereTheyAre) {
   for (int f = 0; f < count; ++f) {
     bool beside_lid = is_on_lid(scan, f);
     for (int h = 3 * f; h < 3 * f + 3; ++h) beside_lid |= is_on_lid(scan, scan.opposite[h] / 3);
-    if (!beside_lid) ASSERT_TRUE(kept.contains(corners(scan, f))) << f;
+    if (!beside_lid) {
+      ASSERT_TRUE(kept.contains(corners(scan, f))) << f;
+    }
   }
   const TopologySummary before = summarize_topology(to_soup(scan)), after = summarize_topology(to_soup(made.mesh));
   EXPECT_EQ(after.euler, before.euler);
