@@ -114,6 +114,8 @@ TEST(Spikes, ABareRodHasSquareQuads) {
   const RemeshResult r = remesh(bare_rod(), options, context);
   testing::expect_sound(r);
   EXPECT_GE(r.report["final"]["scaled_jacobian"]["p50"].get<double>(), 0.9);
+  const double area = std::numbers::pi / 60;  // of unit length
+  EXPECT_GE(r.report["base"]["quads"].get<double>(), 3 * 3 / area);
 }
 
 }  // namespace
