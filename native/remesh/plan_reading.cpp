@@ -169,7 +169,7 @@ Plan::Origin origin_from_json(const PlanEntry& entry) {
     entry.only({"surface", "faces", "boundary_nodes", "cubes"});
     Plan::Origin origin;
     origin.surface = entry.at("surface").text();
-    origin.faces = entry.at("faces").integer(0, std::numeric_limits<std::int64_t>::max());
+    if (entry.has("faces")) origin.faces = entry.at("faces").integer(0, std::numeric_limits<std::int64_t>::max());
     origin.tower = tower_from_json(entry);
     return origin;
   }
