@@ -207,7 +207,6 @@ class HybridMesh {
   std::shared_ptr<const PatchMap> shared_map(int node) const;
   const PatchSampler* sampler(int node) const;
   int map_owner(int node) const;  // nearest self-or-ancestor that has one, or -1
-  void drop_map(int node);
   void drop_maps();
   bool has_maps() const;
 
@@ -323,5 +322,26 @@ class HybridMesh {
 // Every broken invariant in words; empty if there is none. Checks links, levels, manifoldness of the leaves and of every level, balance, operations,
 // counts.
 std::vector<std::string> find_defects(const HybridMesh& mesh);
+
+// Calls visit(leaf) for the leaves around a corner, the ones clockwise of the start in reverse order after the others.
+template <class Visit>
+void HybridMesh::visit_corner(int node, int corner, const Visit& visit) const {
+  const HalfEdge start = descend(nodes_[node].half[corner], max_level + 1);
+  HalfEdge h = start;
+  while (true) {
+    const Sector sector = sector_left(h, max_level + 1);
+    if (sector.node < 0) break;
+    visit(sector.node, false);
+    h = sector.next;
+    if (h == start) return;
+  }
+  h = start;
+  while (true) {
+    const Sector sector = sector_right(h, max_level + 1);
+    if (sector.node < 0) return;
+    visit(sector.node, true);
+    h = sector.next;
+  }
+}
 
 }  // namespace hybrid_mesh

@@ -17,6 +17,7 @@
 #include "layout/drawn/boundary_corners.h"
 #include "layout/drawn/curve_cleaning.h"
 #include "layout/drawn/point_grid.h"
+#include "layout/drawn/stroke_path.h"
 #include "layout/drawn/stroke_projection.h"
 #include "surface/placement.h"
 
@@ -26,32 +27,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFinest = 0.0025;          // edges near strokes are not split below this length
 constexpr std::size_t kMostFaces = 400000;  // made by splitting
-
-// A stroke on the surface, on its way to become curves.
-struct Path {
-  int stroke = -1;
-  DrawnStroke::Fit fit = DrawnStroke::Fit::Tight;
-  std::vector<FacePoint> points;
-  std::vector<double> at;  // arc length
-  std::array<bool, 2> at_boundary{};
-  std::array<int, 2> junction{-1, -1};
-  struct Stop {
-    double at;
-    int junction;
-  };
-  std::vector<Stop> stops;  // junctions that it passes through
-  bool dropped = false;
-
-  double length() const { return at.back(); }
-};
-
-// Ends of strokes that meet, or a node of the boundary.
-struct Junction {
-  std::vector<std::pair<int, int>> ends;  // path, 0: its start, 1: its end
-  FacePoint place;
-  bool boundary = false;
-  int vertex = -1;
-};
 
 class LayoutMaker {
  public:
@@ -92,13 +67,6 @@ class LayoutMaker {
     problems_.push_back({kind, message, std::move(where), stroke, -1});
   }
 
-  std::vector<Vec3> line_of(const Path& path, double from = -kInfinity, double to = kInfinity) const {
-    std::vector<Vec3> line;
-    for (std::size_t i = 0; i < path.points.size(); ++i)
-      if (path.at[i] >= from && path.at[i] <= to) line.push_back(path.points[i].at);
-    return line;
-  }
-
   Vec3 normal(int face) const {
     const std::array<Vec3, 3> c = paths_on_.corners(face);
     return (c[1] - c[0]).cross(c[2] - c[0]).normalized();
@@ -114,7 +82,7 @@ class LayoutMaker {
       std::vector<Vec3> points;
       for (const Vec3& p : strokes_[s].points) points.push_back(frame_.to_unit(p));
       for (ProjectedStroke& piece : projection(s, points, problems_)) {
-        Path path;
+        StrokePath path;
         path.stroke = s;
         path.fit = strokes_[s].fit;
         path.at_boundary = piece.at_boundary;
@@ -135,7 +103,7 @@ class LayoutMaker {
       edges.clear();
       std::vector<char> seen(curves_.face_count(), 0);
       const EditMesh& mesh = curves_.mesh();
-      for (Path& path : paths_)
+      for (StrokePath& path : paths_)
         for (FacePoint& p : path.points) {
           p = paths_on_.locate(p.at, p.face);
           if (seen[p.face]) continue;
@@ -163,12 +131,12 @@ class LayoutMaker {
     PointGrid grid(edge_length());
     std::vector<std::pair<int, int>> owner;
     for (int k = 0; k < static_cast<int>(paths_.size()); ++k) {
-      Path& path = paths_[k];
+      StrokePath& path = paths_[k];
       // Points of this path that have another line beside them.
       std::vector<char> beside(path.points.size(), 0);
       std::vector<Vec3> normals;
       for (const FacePoint& p : path.points) normals.push_back(normal(p.face));
-      const auto distance = [](const Vec3& p, const Path& other, int i) {
+      const auto distance = [](const Vec3& p, const StrokePath& other, int i) {
         double best = kInfinity;
         for (const int a : {i - 1, i}) {
           if (a < 0 || a + 1 >= static_cast<int>(other.points.size())) continue;
@@ -199,7 +167,7 @@ class LayoutMaker {
         std::size_t j = i;
         while (j < beside.size() && beside[j]) ++j;
         if (j > i && path.at[j - 1] - path.at[i] > run) {
-          report(Kind::Overlap, "a stroke runs along another one or along itself, and is left out", line_of(path, path.at[i], path.at[j - 1]),
+          report(Kind::Overlap, "a stroke runs along another one or along itself, and is left out", path.line(path.at[i], path.at[j - 1]),
                  path.stroke);
           path.dropped = true;
           break;
@@ -211,8 +179,8 @@ class LayoutMaker {
         grid.resize(own);
       }
     }
-    std::vector<Path> kept;
-    for (Path& path : paths_)
+    std::vector<StrokePath> kept;
+    for (StrokePath& path : paths_)
       if (!path.dropped) kept.push_back(std::move(path));
     paths_ = std::move(kept);
   }
@@ -231,7 +199,7 @@ class LayoutMaker {
         throw Error(ErrorCode::InvalidInput, "a node is given at the point " + std::to_string(v) + ", which is not on the surface's boundary");
     if (!given_nodes_) nodes = boundary_corners(unit_, snap_ > 0 ? snap_ : kFinest, options_.corner_angle);
     for (const int v : nodes) {
-      Junction j;
+      StrokeJunction j;
       j.place = {mesh.out[v] / 3, curves_.points()[v]};
       j.boundary = true;
       j.vertex = v;
@@ -252,7 +220,7 @@ class LayoutMaker {
     std::vector<std::vector<int>> groups;
     std::vector<FacePoint> places;
     std::vector<int> group;
-    for (const Junction& j : junctions_) {
+    for (const StrokeJunction& j : junctions_) {
       group.push_back(static_cast<int>(groups.size()));
       groups.push_back({static_cast<int>(places.size())});
       places.push_back(j.place);
@@ -297,7 +265,7 @@ class LayoutMaker {
       if (number >= given_count_) {
         Vec3 sum = Vec3::Zero();
         for (const int x : members) sum += places[x].at;
-        Junction j;
+        StrokeJunction j;
         j.place = paths_on_.locate(sum / static_cast<double>(members.size()), places[members[0]].face);
         number = static_cast<int>(junctions_.size());
         junctions_.push_back(j);
@@ -321,7 +289,7 @@ class LayoutMaker {
         grid.add(paths_[k].points[i].at);
       }
     for (int number = given_count_; number < static_cast<int>(junctions_.size()); ++number) {
-      Junction& j = junctions_[number];
+      StrokeJunction& j = junctions_[number];
       const Vec3 p = j.place.at;
       bool leaves = false;
       for (const auto& [path, end] : j.ends) leaves = leaves || paths_[path].at_boundary[end];
@@ -333,7 +301,7 @@ class LayoutMaker {
       FacePoint place;
       grid.near(p, snap_ + edge_length(), [&](int n) {
         const auto& [k, i] = owner[n];
-        const Path& path = paths_[k];
+        const StrokePath& path = paths_[k];
         for (const int a : {i - 1, i}) {
           if (a < 0 || a + 1 >= static_cast<int>(path.points.size())) continue;
           const Vec3 from = path.points[a].at, along = path.points[a + 1].at - from;
@@ -359,17 +327,17 @@ class LayoutMaker {
         paths_[other].stops.push_back({at, number});
       }
     }
-    for (Path& path : paths_)
-      std::stable_sort(path.stops.begin(), path.stops.end(), [](const Path::Stop& a, const Path::Stop& b) { return a.at < b.at; });
+    for (StrokePath& path : paths_)
+      std::stable_sort(path.stops.begin(), path.stops.end(), [](const StrokePath::Stop& a, const StrokePath::Stop& b) { return a.at < b.at; });
   }
 
   // Every junction becomes a vertex.
   void place_junctions() {
-    for (const Junction& j : junctions_)
+    for (const StrokeJunction& j : junctions_)
       if (j.vertex >= 0) placing_->take(j.vertex);
-    for (Junction& j : junctions_)
+    for (StrokeJunction& j : junctions_)
       if (j.vertex < 0) j.vertex = j.boundary ? placing_->on_boundary(j.place.at) : placing_->inside(j.place);
-    for (Path& path : paths_)
+    for (StrokePath& path : paths_)
       for (FacePoint& p : path.points) p = paths_on_.locate(p.at, p.face);
   }
 
@@ -379,7 +347,7 @@ class LayoutMaker {
   void draw() {
     for (int k = 0; k < static_cast<int>(paths_.size()); ++k) {
       progress_.check();
-      Path& path = paths_[k];
+      StrokePath& path = paths_[k];
       const Vec3 &start = curves_.points()[junctions_[path.junction[0]].vertex], &end = curves_.points()[junctions_[path.junction[1]].vertex];
       // The way to the end's vertex begins before it.
       const double before = std::max(0.5 * snap_, 1.2 * (path.points.front().at - start).norm()),
@@ -413,15 +381,15 @@ class LayoutMaker {
       for (; stop < path.stops.size(); ++stop) end_at(junctions_[path.stops[stop].junction].vertex);
       end_at(junctions_[path.junction[1]].vertex);
       if (!joined)
-        report(Kind::Disconnected, "a stroke goes from one component of the surface to another", line_of(path), path.stroke);
+        report(Kind::Disconnected, "a stroke goes from one component of the surface to another", path.line(), path.stroke);
       else if (pieces == 0 && path.junction[0] != path.junction[1])
-        report(Kind::Overlap, "nothing is left of a stroke: another one joins the same nodes there", line_of(path), path.stroke);
+        report(Kind::Overlap, "nothing is left of a stroke: another one joins the same nodes there", path.line(), path.stroke);
     }
   }
 
   std::vector<int> vertices() const {
     std::vector<int> all;
-    for (const Junction& j : junctions_) all.push_back(j.vertex);
+    for (const StrokeJunction& j : junctions_) all.push_back(j.vertex);
     return all;
   }
   std::vector<int> boundary_nodes() const {
@@ -458,10 +426,10 @@ class LayoutMaker {
     for (const LayoutProblem& p : problems_) found[p.stroke] = 1;
     for (PatchLayout::Curve& c : out.layout.curves)
       if (c.stroke >= 0) found[c.stroke = paths_[c.stroke].stroke] = 1;
-    for (const Path& path : paths_) {
+    for (const StrokePath& path : paths_) {
       if (found[path.stroke]) continue;
       found[path.stroke] = 1;
-      report(Kind::Unusable, "nothing is left of a stroke: it is too small", line_of(path), path.stroke);
+      report(Kind::Unusable, "nothing is left of a stroke: it is too small", path.line(), path.stroke);
     }
     for (LayoutProblem& p : problems_) {
       for (Vec3& x : p.where) x = frame_.from_unit(x);
@@ -480,8 +448,8 @@ class LayoutMaker {
   TriangleSurface unit_;
   SurfaceCurves curves_;
   SurfacePaths paths_on_;
-  std::vector<Path> paths_;
-  std::vector<Junction> junctions_;  // first those of the boundary
+  std::vector<StrokePath> paths_;
+  std::vector<StrokeJunction> junctions_;  // first those of the boundary
   int given_count_ = 0;
   bool given_nodes_ = false;
   std::optional<VertexPlacing> placing_;
