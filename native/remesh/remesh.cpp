@@ -3,8 +3,6 @@
 
 #include <tbb/task_arena.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,6 +10,7 @@
 #include "remesh/candidate.h"
 #include "remesh/error_search.h"
 #include "remesh/level_fits.h"
+#include "remesh/protrusion.h"
 #include "remesh/report.h"
 
 namespace hybrid_mesh {
@@ -39,29 +38,23 @@ Candidate fitted(const RemeshTask& task, Candidate c, bool may_change_base) {
   return c;
 }
 
-double mean_quad_width(const QuadMesh& mesh) {
-  double area = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f)
-    for (std::int64_t i = mesh.offsets[f] + 1; i + 1 < mesh.offsets[f + 1]; ++i) {
-      const Vec3& origin = mesh.points[mesh.indices[mesh.offsets[f]]];
-      area += 0.5 * (mesh.points[mesh.indices[i]] - origin).cross(mesh.points[mesh.indices[i + 1]] - origin).norm();
-    }
-  return std::sqrt(area / static_cast<double>(mesh.face_count()));
-}
-
-// In widths of a quad: how far off a point of the surface is. Above 1.25 the base has missed something that sticks out.
-double farthest(const Candidate& c) { return c.distance.hausdorff / mean_quad_width(c.final_mesh); }
+// Above so many widths of a quad that the surface sticks out of the mesh, the base has missed a limb.
 constexpr double kMissed = 1.25;
-// Where the shape has no limbs that a minimal base keeps, only what is as far off as this is worth the time of another base.
+// Where another base may be no minimal one, only what sticks out by this is worth its time.
 constexpr double kMissedByFar = 2;
 
-bool minimal_base_grows_skin(const RemeshTask& task) { return task.options.base == BaseSize::Auto && !task.options.semi_regular; }
+bool may_be_minimal(const RemeshTask& task) { return task.options.base == BaseSize::Auto && !task.options.semi_regular; }
+
+bool misses_a_limb(const RemeshTask& task, const Candidate& c) {
+  const double most = (may_be_minimal(task) ? kMissed : kMissedByFar) * mean_width(c.final_mesh);
+  return c.distance.hausdorff >= most && protrusion(task.source.repaired, task.source.placement, c.final_mesh) >= most;
+}
 
 // What is tried where the first remesh has missed something: a minimal base, which has few quads and grows skin on a finer level, keeps limbs that a
 // fitted one loses; else a base of which near-ties are decided in another way.
 Found<Candidate> another_candidate(const RemeshTask& task) {
   RemeshOptions options = task.options;
-  const bool minimal = minimal_base_grows_skin(task);
+  const bool minimal = may_be_minimal(task);
   if (minimal) options.base = BaseSize::Minimal;
   const RemeshTask other{options, task.source, task.progress, task.watch};
   Found<Candidate> c = search_candidate(other, {}, base_requests(options, !minimal)).candidate;
@@ -74,7 +67,7 @@ Candidate best_candidate(const RemeshTask& task) {
   CandidateSearch first = search_candidate(task, {}, base_requests(task.options, false));
   if (!first.candidate) throw Error(first.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, first.candidate.reason);
   Candidate best = fitted(task, std::move(*first.candidate), true);
-  if (task.options.error > 0 || farthest(best) < (minimal_base_grows_skin(task) ? kMissed : kMissedByFar)) return best;
+  if (task.options.error > 0 || !misses_a_limb(task, best)) return best;
   Found<Candidate> other = another_candidate(task);
   const bool better = other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2;
   return better ? std::move(*other) : std::move(best);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "surface/polygon_soup.h"
@@ -54,6 +55,51 @@ inline PolygonSoup ball(int n, double open = 2, const Vec3& at = Vec3::Zero(), d
           }
           s.offsets.push_back(static_cast<std::int64_t>(s.indices.size()));
         }
+  }
+  return s;
+}
+
+// A plate with windows in a row, rounded off: genus `windows`. Its quads are 1 / n wide before it is.
+inline PolygonSoup plate_with_windows(int windows, int n) {
+  const int width = 2 * windows + 1, height = 3;
+  const auto solid = [&](int x, int y, int z) {
+    if (x < 0 || y < 0 || z < 0 || x >= width * n || y >= height * n || z >= n) return false;
+    return !(y / n == 1 && (x / n) % 2 == 1);
+  };
+  PolygonSoup s;
+  std::map<std::array<int, 3>, int> number;
+  const auto vertex = [&](int x, int y, int z) {
+    const auto [it, fresh] = number.insert({{x, y, z}, static_cast<int>(s.points.size())});
+    if (fresh) s.points.push_back(Vec3(x, y, z) / n);
+    return it->second;
+  };
+  for (int x = 0; x < width * n; ++x)
+    for (int y = 0; y < height * n; ++y)
+      for (int z = 0; z < n; ++z)
+        for (int axis = 0; solid(x, y, z) && axis < 3; ++axis)
+          for (const int side : {0, 1}) {
+            std::array<int, 3> beside{x, y, z};
+            beside[axis] += 2 * side - 1;
+            if (solid(beside[0], beside[1], beside[2])) continue;
+            for (int k = 0; k < 4; ++k) {
+              const int turn = side ? k : 3 - k;
+              std::array<int, 3> corner{x, y, z};
+              corner[axis] += side;
+              corner[(axis + 1) % 3] += turn == 1 || turn == 2;
+              corner[(axis + 2) % 3] += turn >= 2;
+              s.indices.push_back(vertex(corner[0], corner[1], corner[2]));
+            }
+            s.offsets.push_back(static_cast<std::int64_t>(s.indices.size()));
+          }
+  for (int round = 0; round < 2 * n; ++round) {
+    std::vector<Vec3> sum(s.points.size(), Vec3::Zero());
+    std::vector<int> count(s.points.size(), 0);
+    for (std::size_t i = 0; i < s.indices.size(); i += 4)
+      for (int k = 0; k < 4; ++k) {
+        sum[s.indices[i + k]] += s.points[s.indices[i + (k + 1) % 4]];
+        ++count[s.indices[i + k]];
+      }
+    for (std::size_t v = 0; v < sum.size(); ++v) s.points[v] = 0.5 * s.points[v] + 0.5 * sum[v] / count[v];
   }
   return s;
 }

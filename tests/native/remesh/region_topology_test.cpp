@@ -152,5 +152,22 @@ TEST(RegionTopology, RefusesWhatARingAloneCanHave) {
   EXPECT_NE(refusal(all, {{"layout", "even"}}).find("boundary"), std::string::npos);
 }
 
+// A base of few quads around each handle; on a finer level most of the surface, with all its handles, is laid out anew.
+TEST(RegionTopology, MinimalBasesOfSurfacesWithHandles) {
+  for (const int windows : {2, 3}) {
+    const PolygonSoup soup = testing::plate_with_windows(windows, 6);
+    RemeshOptions how;
+    how.base = BaseSize::Minimal;
+    how.vertices = 3000;
+    const RemeshResult made = run(soup, how);
+    expect_sound(made);
+    expect_maps_without_defects(made.hierarchy);
+    EXPECT_EQ(summarize_topology(to_soup(made.repaired)).genus, windows);
+    EXPECT_LE(made.hierarchy.base_count(), 15 * windows);
+    EXPECT_GE(made.hierarchy.operation_count(), 1);
+    EXPECT_EQ(encode_hierarchy(made.hierarchy, "{}"), encode_hierarchy(run(soup, how, made.plan).hierarchy, "{}"));
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_mesh
