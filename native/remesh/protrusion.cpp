@@ -28,28 +28,21 @@ double area_of(const std::vector<Vec3>& points, const std::vector<std::array<int
   return area;
 }
 
-// Unit normals at the points, turned outwards where the surface is closed.
-std::vector<Vec3> outward_normals(const TriangleSurface& surface) {
-  std::vector<Vec3> normals(surface.points.size(), Vec3::Zero());
+// -1 for a closed surface whose normals point inwards, else 1.
+double outwards(const TriangleSurface& surface) {
+  if (std::find(surface.opposite.begin(), surface.opposite.end(), -1) != surface.opposite.end()) return 1;
   double volume = 0;  // six times
-  for (const auto& [a, b, c] : surface.faces) {
-    const Vec3 &p = surface.points[a], &q = surface.points[b], &r = surface.points[c];
-    volume += p.dot(q.cross(r));
-    const Vec3 normal = (q - p).cross(r - p);
-    for (const int v : {a, b, c}) normals[v] += normal;
-  }
-  const bool closed = std::find(surface.opposite.begin(), surface.opposite.end(), -1) == surface.opposite.end();
-  for (Vec3& n : normals) n = (closed && volume < 0 ? -1.0 : 1.0) * n.normalized();
-  return normals;
+  for (const auto& [a, b, c] : surface.faces) volume += surface.points[a].dot(surface.points[b].cross(surface.points[c]));
+  return volume < 0 ? -1 : 1;
 }
 
 }  // namespace
 
 double protrusion(const TriangleSurface& surface, const Placement& placement, const QuadMesh& mesh) {
-  constexpr double least_cosine = 0.3;  // between the normal and the way out of the mesh
+  constexpr double least_cosine = 0.3;  // between the mesh's normal and the way to a point outside: at its sharp edges it is not 1
   const std::vector<std::array<int, 3>> faces = fans_of(mesh);
   const SurfaceDistanceQuery query(mesh.points, faces);
-  const std::vector<Vec3> normals = outward_normals(surface);
+  const double sign = outwards(surface);
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, surface.points.size()), 0.0,
       [&](const tbb::blocked_range<std::size_t>& range, double most) {
@@ -58,7 +51,9 @@ double protrusion(const TriangleSurface& surface, const Placement& placement, co
           const ClosestPoint closest = query.closest(p);
           Vec3 out = p;
           for (int i = 0; i < 3; ++i) out -= closest.weights[i] * mesh.points[faces[closest.face][i]];
-          if (out.dot(normals[v]) > least_cosine * out.norm()) most = std::max(most, out.norm());
+          const auto& [a, b, c] = faces[closest.face];
+          const Vec3 normal = sign * (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).normalized();
+          if (out.dot(normal) > least_cosine * out.norm()) most = std::max(most, out.norm());
         }
         return most;
       },

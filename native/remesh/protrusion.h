@@ -7,9 +7,9 @@
 
 namespace hybrid_mesh {
 
-// How far a surface sticks out of a mesh that was made of it: the largest distance of a point of the surface that
-// lies outside the mesh. A limb that the mesh has lost does; the bottom of a fold that it closes does not. Outside is where the surface's normals
-// point, or, if it is closed and has them inwards, where they do not. `placement` brings the surface to where the mesh is.
+// How far a surface sticks out of a mesh that was made of it: the largest distance of a point of the surface that lies outside the mesh. A limb that
+// the mesh has lost does; the bottom of a fold that it closes does not. Outside is where the mesh's normals point, or, if the surface is closed and
+// has them inwards, where they do not. `placement` brings the surface to where the mesh is.
 double protrusion(const TriangleSurface& surface, const Placement& placement, const QuadMesh& mesh);
 
 // The width of a square with the mean area of the mesh's faces.

@@ -2,9 +2,12 @@
 #include "remesh/report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "hierarchy/stretch.h"
+#include "remesh/protrusion.h"
 #include "remesh/quality.h"
 
 namespace hybrid_mesh {
@@ -65,11 +68,27 @@ double regular_fraction(const Candidate& c) {
   return 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, regular));
 }
 
-// What was asked for and could not be had.
-Json warnings(const RemeshOptions& options, const Candidate& c) {
+// Above so many widths of its quads a mesh is farther from the surface than quads of that size explain.
+constexpr double kFarOff = 2;
+constexpr double kManyInverted = 0.001;  // of the quads
+
+// What was asked for and could not be had, and where the result is poor.
+Json warnings(const RemeshTask& task, const Candidate& c) {
+  const RemeshOptions& options = task.options;
   Json list = Json::array();
   if (options.error > 0 && c.distance.l2 > options.error)
     list.push_back("the error bound of " + scientific(options.error) + " is not met: the L2 distance is " + scientific(c.distance.l2));
+  const double width = mean_width(c.final_mesh), far = c.distance.hausdorff;
+  if (far > kFarOff * width) {
+    const bool limb = protrusion(task.source.repaired, task.source.placement, c.final_mesh) > kFarOff * width;
+    list.push_back("the mesh is up to " + scientific(far) + " of the diagonal away from the surface, " + std::to_string(std::lround(far / width)) +
+                   " widths of its quads: " +
+                   (limb ? "a part that sticks out is lost; a larger base (base_quads) or adaptive refinement may keep it"
+                         : "a fold is closed; more vertices or adaptive refinement follow it"));
+  }
+  if (const QuadQuality q = quad_quality(c.final_mesh); q.inverted > kManyInverted)
+    list.push_back(std::to_string(std::lround(q.inverted * static_cast<double>(q.quads))) + " of " + std::to_string(q.quads) +
+                   " quads are inverted: the surface is bent or thin there beyond what quads of this size follow; more vertices may help");
   return list;
 }
 
@@ -126,7 +145,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
                      {"irregular_vertices", irregular_counts(c)},
                      {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
   if (task.options.error > 0) report["final"]["error_bound_met"] = d.l2 <= task.options.error;
-  report["warnings"] = warnings(task.options, c);
+  report["warnings"] = warnings(task, c);
   return report;
 }
 

@@ -31,18 +31,20 @@ TEST(Protrusion, IsOfWhatSticksOutAlone) {
   const QuadMesh mesh = mesh_of(ball(24));
   const Placement here{};
   EXPECT_LT(protrusion(repaired(ball(24)), here, mesh), 1e-9);
-  const TriangleSurface spiked = repaired(changed_ball(12)), dented = repaired(changed_ball(-12));
+  const TriangleSurface spiked = repaired(changed_ball(12)), dented = repaired(changed_ball(-4));
   double top = 0;
   for (const Vec3& p : spiked.points) top = std::max(top, p.z());
   double height = 0;
   for (const Vec3& p : mesh.points) height = std::max(height, p.z());
   EXPECT_NEAR(protrusion(spiked, here, mesh), top - height, 0.05 * (top - height));
   EXPECT_LT(protrusion(dented, here, mesh), 0.05);
-  // The same of a surface that is turned inside out.
+  // The same of a surface that is turned inside out, and its mesh with it.
   TriangleSurface turned = spiked;
   for (auto& f : turned.faces) std::swap(f[1], f[2]);
   connect_half_edges(turned);
-  EXPECT_DOUBLE_EQ(protrusion(turned, here, mesh), protrusion(spiked, here, mesh));
+  QuadMesh other = mesh;
+  for (std::size_t i = 0; i < other.indices.size(); i += 3) std::swap(other.indices[i + 1], other.indices[i + 2]);
+  EXPECT_DOUBLE_EQ(protrusion(turned, here, other), protrusion(spiked, here, mesh));
 }
 
 TEST(Protrusion, WidthsAreThoseOfSquares) {
