@@ -78,7 +78,7 @@ class Gluing {
         const PatchSide other = graph_.neighbours[q][i];
         if (other.patch < 0) continue;
         const std::vector<int>&a = chains_[q][i], &b = chains_[other.patch][other.side];
-        if (a.size() != b.size()) throw Error(ErrorCode::Internal, "the maps of two neighbouring patches do not share their side");
+        if (a.size() != b.size()) throw NoMap("the maps of two neighbouring patches do not share their side");
         for (std::size_t k = 0; k < a.size(); ++k) {
           const int x = find(parent, a[k]), y = find(parent, b[b.size() - 1 - k]);
           parent[std::max(x, y)] = std::min(x, y);

@@ -16,7 +16,7 @@ struct MappedSurface {
 };
 
 // The inverse of extracting: joins maps of patches along their sides to one surface. `graph`: of the patches, one a map; the maps share the points
-// along common sides. `repaired_faces` are the faces that the maps name as their source. Throws Error{Internal} if two maps do not meet along a side.
+// along common sides. `repaired_faces` are the faces that the maps name as their source. Throws NoMap if two maps do not meet along a side.
 MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph, const std::vector<std::array<int, 3>>& repaired_faces);
 
 // The same without the faces that the maps name: the surface is its own source, point by point and face by face.

@@ -28,7 +28,7 @@ Budget plan_budget(const RemeshOptions& options, const Source& source, const Tar
   // Roughly what the topology asks for at least.
   const TopologySummary& topology = source.topology;
   const double least = 6.0 * topology.components + 8 * topology.genus + 2.6 * topology.boundary_loops;
-  const double for_rods = kQuadsAround * kQuadsAround / source.area;
+  const double for_rods = topology.boundary_loops > 0 ? 0 : kQuadsAround * kQuadsAround / source.area;  // a strip is none
   const double enough =
       std::max(std::clamp(static_cast<double>(b.vertices) / 64, 20.0, 150.0), std::min(std::max(1.7 * least, for_rods), b.vertices / 4.0));
   if (options.levels >= 0 && options.refinement == Refinement::Uniform) {
