@@ -48,11 +48,11 @@ struct BaseRequest {
 // Eight of them. `another`: others than those of the first time.
 std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool another);
 
-// The first of the requests that gives a map, and, with a bound on the vertices, a uniform mesh within it; the number of levels falls until it does.
 struct CandidateSearch {
   Found<Candidate> candidate;
   std::int64_t too_many = 0;  // vertices that are needed at least, where only meshes of more than allowed were found
 };
+// The first of the requests that gives a map, and, with a bound on the vertices, a uniform mesh within it; the number of levels falls until it does.
 CandidateSearch search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests);
 
 // What a plan says: made again as it was on the surface that the plan was made on, else laid out on this one. Throws Error.

@@ -25,10 +25,7 @@ class RegionRepatcher {
   void operator()(const Plan::Region& region, std::size_t number) {
     const std::string place = "the plan's operations[" + std::to_string(number) + "]: ";
     try {
-      const auto done = found([&] {
-        repatch(region);
-        return true;
-      });
+      const auto done = found([&] { repatch(region); });
       if (!done) throw Error(ErrorCode::Unsupported, place + "no map to its new quads is found: " + done.reason);
     } catch (LayoutError& e) {
       for (LayoutProblem& p : e.problems)

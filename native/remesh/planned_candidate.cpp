@@ -69,7 +69,7 @@ Candidate grow(const RemeshTask& task, const Plan& plan) {
 // As it was made on the surface that the plan was made on; nothing if this is another one, or the base was changed by hand.
 std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   if (!plan.origin || plan.origin->surface != task.source.fingerprint) return std::nullopt;
-  if (plan.origin->faces == 0) return std::nullopt;  // of a time when plans on towers did not tell
+  if (plan.origin->faces == 0) return std::nullopt;  // a plan on a tower need not tell
   WorkingSurfaceInUse working;
   const std::int64_t faces = plan.origin->faces;
   Found<BaseMap> map;

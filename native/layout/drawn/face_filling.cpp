@@ -361,10 +361,7 @@ PatchedSurface fill_faces(DrawnLayout& drawn, const FaceFillingOptions& options,
   const std::vector<DiskLayout> fillings = find_fillings(layout, options, progress);
   FaceCutter cutter(layout);
   for (int f = 0; f < static_cast<int>(layout.faces.size()); ++f) {
-    const auto filled = found([&] {
-      cutter.add(f, fillings[f]);
-      return true;
-    });
+    const auto filled = found([&] { cutter.add(f, fillings[f]); });
     if (!filled) {
       LayoutProblem problem{LayoutProblem::Kind::ManySides,
                             "a face of " + std::to_string(layout.faces[f].side_count()) + " sides cannot be filled with quads (" + filled.reason +

@@ -88,7 +88,7 @@ std::vector<RegionRepatch> find_regions(const LevelState& state, const EditCandi
     candidates[i].gain = -std::numeric_limits<double>::max();
     if (!find_edit_defect(state.quads, candidates[i].region, candidates[i].edit).empty()) return;
     const Found<MappedEdit> made = found([&] { return repatch_region(state, trial, progress.part(0, 0)); });
-    if (made) candidates[i].gain = made.value->energy_before - made.value->energy_after;
+    if (made) candidates[i].gain = made->energy_before - made->energy_after;
   });
   std::vector<RegionRepatch> found;
   for (const EditCandidate& c : choose_edits(state.quads, std::move(candidates), options)) found.push_back(repatch_by(c.edit));

@@ -61,7 +61,7 @@ class EditSearch {
       const GlobalMapReport report = smooth_map(charts, local.surface, options, progress);
       return (report.energy - 1) * area;
     });
-    return after ? before - *after.value : -std::numeric_limits<double>::max();
+    return after ? before - *after : -std::numeric_limits<double>::max();
   }
 
   const TrialMap& map_;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 #include "base/found.h"
@@ -13,38 +15,44 @@
 namespace hybrid_mesh {
 namespace {
 
-// Maps on their way to the surface itself, each beside what is done meanwhile.
+// Maps on their way to the surface itself, each beside what is done meanwhile. No exception leaves a task, and the group is never cancelled: TBB
+// would make every parallel loop inside the other tasks return early, and these would go on with what it had not computed.
 class Carriers {
  public:
   ~Carriers() {
-    try {
-      tasks_.cancel();
-      tasks_.wait();
-    } catch (...) {
-      // Another exception is on its way already.
-    }
+    stopped_.store(true, std::memory_order_relaxed);
+    tasks_.wait();
   }
   void carry(MappedLayouts::Stage& stage, const GlobalMapOptions& options, const Progress& progress) {
     tasks_.run([this, &stage, &options, progress] {
-      const auto carried = found([&] {
-        stage.map.carry(std::numeric_limits<double>::infinity(), options, progress);
-        return true;
-      });
-      stage.failure = carried.reason;
-      // Without a map of a finer level, further search is in vain; that of the base can be made in another way.
-      if (!carried && stage.level > 0) failed_.store(true, std::memory_order_relaxed);
+      if (stopped_.load(std::memory_order_relaxed)) return;
+      try {
+        const auto carried = found([&] { stage.map.carry(std::numeric_limits<double>::infinity(), options, progress); });
+        stage.failure = carried.reason;
+        // Without a map of a finer level, further search is in vain; that of the base can be made in another way.
+        if (!carried && stage.level > 0) failed_.store(true, std::memory_order_relaxed);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+        failed_.store(true, std::memory_order_relaxed);
+      }
     });
   }
   void check() {
-    if (!failed_.load(std::memory_order_relaxed)) return;
-    tasks_.wait();
-    throw NoMap("the map of a level with operations could not be carried to the surface");
+    if (failed_.load(std::memory_order_relaxed)) wait();
   }
-  void wait() { tasks_.wait(); }
+  // Throws what a carrier has thrown, and NoMap where the map of a finer level cannot be carried.
+  void wait() {
+    tasks_.wait();
+    if (error_) std::rethrow_exception(error_);
+    if (failed_.load(std::memory_order_relaxed)) throw NoMap("the map of a level with operations could not be carried to the surface");
+  }
 
  private:
   tbb::task_group tasks_;
-  std::atomic<bool> failed_{false};
+  std::atomic<bool> failed_{false}, stopped_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
 };
 
 class LevelMapper {
@@ -73,12 +81,8 @@ class LevelMapper {
     Carriers carriers;
     const auto keep = [&] {
       const int level = static_cast<int>(result_.script.levels.size()) - 1;
-      Found<bool> free;
-      if (last > 0)
-        free = found([&] {
-          map_.uncut(versions_[0].map, progress.part(0, 0));
-          return true;
-        });
+      Found<> free;
+      if (last > 0) free = found([&] { map_.uncut(versions_[0].map, progress.part(0, 0)); });
       if (!free && level > 0 && last > 0) throw NoMap(free.reason);
       result_.stages.push_back({level, map_.best(), free.reason});
       if (free) carriers.carry(result_.stages.back(), versions_[0].map, progress.part(0, 0));
@@ -95,7 +99,6 @@ class LevelMapper {
     }
     if (is_new()) keep();
     carriers.wait();
-    carriers.check();
   }
 
   TrialMap map_;

@@ -19,10 +19,7 @@ void TrialMap::map_patches_and_keep(const GlobalMapOptions& options, const Progr
 
 void TrialMap::refine(double vertices, const GlobalMapOptions& options, const Progress& progress) {
   // A coarser surface than wished does as well as it can.
-  found([&] {
-    best_.carry(vertices, options, progress);
-    return true;
-  });
+  found([&] { best_.carry(vertices, options, progress); });
   best_.quadrisect();
   least_ *= 4;
 }
@@ -54,7 +51,7 @@ void TrialMap::smooth(GlobalMapOptions options, const Progress& progress) {
       return smooth_map(*fresh_, mapped_.surface, options, progress);
     });
     if (report) {
-      excess_ = (report.value->energy - 1) * mapped_.surface.patch_count();
+      excess_ = (report->energy - 1) * mapped_.surface.patch_count();
       return;
     }
     failure = report.reason;

@@ -125,13 +125,11 @@ TEST(RegionTopology, RowsFromARimToTheBoundary) {
   const PolygonSoup soup = ball(24, 0.4);
   const RemeshOptions how = options(30);
   const RemeshResult plain = run(soup, how);
-  const HybridMesh& h = plain.hierarchy;
   int done = 0;
   for (const double height : {0.1, 0.2}) {
     const Json quads = quads_where(plain, [&](const Vec3& p) { return p.z() > height; });
     for (const int rows : {0, 3}) done += try_operation(soup, how, plain, quads, {{"layout", "rows"}, {"height", rows}}) > 0;
   }
-  EXPECT_TRUE(find_defects(h).empty());
   EXPECT_GE(done, 2);
 }
 

@@ -85,7 +85,9 @@ void expect_same_surface(const TriangleSurface& input, const WellShaped& result,
   Context context;
   const SurfaceDistance distance = surface_distance(to_soup(input), to_soup(result.mesh), {20000, 1}, Progress(context));
   EXPECT_LE(distance.hausdorff, near);
-  if (before.boundary_loops > 0) EXPECT_LE(distance.boundary_hausdorff, near);
+  if (before.boundary_loops > 0) {
+    EXPECT_LE(distance.boundary_hausdorff, near);
+  }
 
   ASSERT_EQ(result.place.size(), result.mesh.points.size());
   for (std::size_t v = 0; v < result.place.size(); ++v) {
