@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/stretch.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "base/parallel.h"
 
 namespace hybrid_mesh {
 
@@ -146,7 +146,7 @@ LevelStretch level_stretch(const HybridMesh& hierarchy, const QuadMesh& mesh) {
     }
   }
   std::vector<double> area(hierarchy.node_count(), 0), anisotropy(hierarchy.node_count(), 1);
-  tbb::parallel_for(std::size_t{0}, owners.size(), [&](std::size_t i) {
+  parallel_for_each_index(static_cast<std::int64_t>(owners.size()), [&](std::int64_t i) {
     const int owner = owners[i];
     const SquareMetrics metrics(*hierarchy.map(owner));
     struct Item {

@@ -3,8 +3,6 @@
 // factorization, 1990; Ashcraft, Grimes, The influence of relaxed supernode partitions on the multifrontal method, 1989.
 #include "parameterization/element_cholesky.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -12,6 +10,8 @@
 #include <atomic>
 #include <cmath>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -335,7 +335,7 @@ bool ElementCholesky::factorize(const std::vector<Matrix>& matrices) {
     if (!eliminate(supernodes_[i], placed_.data() + placed_begin_[i], placed_.data() + placed_begin_[i + 1], matrices))
       failed.store(true, std::memory_order_relaxed);
   };
-  tbb::parallel_for(std::size_t{0}, subtrees_.size(), [&](std::size_t t) {
+  parallel_for_each_index(static_cast<std::int64_t>(subtrees_.size()), [&](std::int64_t t) {
     for (int i = subtrees_[t][0]; i < subtrees_[t][1] && !failed.load(std::memory_order_relaxed); ++i) eliminate_one(i);
   });
   for (const int i : top_)

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameterization/patch_extraction.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
 #include <unordered_map>
+
+#include "base/parallel.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -81,9 +81,9 @@ class Extraction {
     parts_.resize(surface_.patch_count());
     flood(progress.part(0, 0.5));
     std::vector<PatchMap> maps(surface_.patch_count());
-    tbb::parallel_for(0, surface_.patch_count(), [&](int q) {
+    parallel_for_each_index(surface_.patch_count(), [&](std::int64_t q) {
       progress.check();
-      maps[q] = extract(q);
+      maps[q] = extract(static_cast<int>(q));
     });
     progress(1);
     return maps;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameterization/relaxation_sweeps.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -89,7 +89,7 @@ void relax_in_sweeps(ChartMesh& charts, const Distortion& density, int sweeps, c
       progress.check();
       const bool back = sweep % 2 == 1;
       const std::vector<int>& side_by_side = blocks.of_colour(back ? blocks.colours() - 1 - i : i);
-      tbb::parallel_for(std::size_t{0}, side_by_side.size(), [&](std::size_t k) {
+      parallel_for_each_index(static_cast<std::int64_t>(side_by_side.size()), [&](std::int64_t k) {
         StarRelaxation stars(charts, density);
         blocks.for_vertices(side_by_side[k], back, [&](int v) { stars.relax(v, false); });
       });

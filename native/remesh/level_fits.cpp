@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/level_fits.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "base/parallel.h"
 #include "remesh/adaptive_refinement.h"
 #include "remesh/report.h"
 #include "remesh/surface_fit.h"
@@ -86,8 +85,8 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
   c.level_meshes.assign(depth + 1, {});
   c.level_reports.assign(depth + 1, {});
   // The finest, which take the longest, first.
-  tbb::parallel_for(0, depth + 1, [&](int k) {
-    const int j = depth - k;
+  parallel_for_each_index(depth + 1, [&](std::int64_t k) {
+    const int j = depth - static_cast<int>(k);
     const bool last = j == depth;
     const Progress part = task.progress.part(0.8, last ? 0.95 : 0.8);
     QuadMesh& mesh = c.level_meshes[j];

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/region_update.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "base/found.h"
+#include "base/parallel.h"
 #include "construction/construction.h"
 #include "remesh/level_fits.h"
 #include "remesh/plan_regions.h"
@@ -133,7 +132,8 @@ RegionUpdate repatch_hierarchy(const HybridMesh& hierarchy, const std::vector<in
   const int levels = h.depth() - region.level + 1;
   std::vector<QuadMesh> parts(levels + 1);
   out.levels.resize(levels);
-  tbb::parallel_for(0, levels + 1, [&](int k) {
+  parallel_for_each_index(levels + 1, [&](std::int64_t i) {
+    const int k = static_cast<int>(i);
     const bool last = k == levels;
     const int level = last ? h.depth() : region.level + k;
     const QuadMesh mesh = last ? h.final_mesh() : h.level_mesh(level);

@@ -2,8 +2,6 @@
 // Based on: Cignoni, Rocchini, Scopigno, Metro: measuring error on simplified surfaces, 1998.
 #include "surface/distance.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "surface/closest_point.h"
 #include "surface/edge_groups.h"
 #include "surface/one_sided_hausdorff.h"
@@ -147,7 +146,7 @@ template <class Add>
 Sums over_blocks(std::int64_t count, const Progress& progress, Add add) {
   const std::int64_t block_count = (count + block_size - 1) / block_size;
   std::vector<Sums> blocks(block_count);
-  tbb::parallel_for(std::int64_t{0}, block_count, [&](std::int64_t block) {
+  parallel_for_each_index(block_count, [&](std::int64_t block) {
     progress.check();
     add(blocks[block], block, block * block_size, std::min(count, (block + 1) * block_size));
   });

@@ -5,12 +5,12 @@
 // distance, most of two surfaces that are close; a sheet over all of a part settles these at once.
 #include "surface/one_sided_hausdorff.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "base/parallel.h"
 
 namespace hybrid_mesh {
 
@@ -148,7 +148,7 @@ class Search {
   // Calls work(begin, end, block) for the blocks of [0, count) in parallel.
   template <class Work>
   void over_blocks(std::int64_t count, Work work) const {
-    tbb::parallel_for(std::int64_t{0}, (count + block_size - 1) / block_size, [&](std::int64_t block) {
+    parallel_for_each_index((count + block_size - 1) / block_size, [&](std::int64_t block) {
       progress_.check();
       work(block * block_size, std::min(count, (block + 1) * block_size), block);
     });

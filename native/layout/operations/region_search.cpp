@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/operations/region_search.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "base/found.h"
+#include "base/parallel.h"
 #include "layout/regions/region_layout.h"
 #include "layout/regions/region_pattern.h"
 #include "parameterization/patch_energy.h"
@@ -40,7 +39,7 @@ std::vector<double> of_quads(const LevelState& state, const Value& value) {
     groups.back().push_back(q);
   }
   std::vector<double> out(state.maps.size());
-  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+  parallel_for_each_index(static_cast<std::int64_t>(groups.size()), [&](std::int64_t g) {
     const std::vector<PatchMap> maps = maps_of(state, groups[g]);
     for (std::size_t k = 0; k < maps.size(); ++k) out[groups[g][k]] = value(maps[k]);
   });
@@ -81,7 +80,7 @@ std::vector<RegionRepatch> find_regions(const LevelState& state, const EditCandi
   const std::vector<double> energy = of_quads(state, [&](const PatchMap& map) { return map_energy(map, scale, theta); });
   std::vector<EditCandidate> candidates =
       find_edit_candidates(state.quads, energy, options, [&](const PatchRegion& region) { return tower_height_of(state, region); });
-  tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+  parallel_for_each_index(static_cast<std::int64_t>(candidates.size()), [&](std::int64_t i) {
     progress.check();
     RegionRepatch trial = repatch_by(candidates[i].edit);
     trial.map = trial_map_options();

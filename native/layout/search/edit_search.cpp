@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/search/edit_search.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "base/found.h"
+#include "base/parallel.h"
 #include "parameterization/initial_map.h"
 
 namespace hybrid_mesh {
@@ -21,7 +20,7 @@ class EditSearch {
     const PatchedSurface& s = map_.mapped().surface;
     std::vector<EditCandidate> candidates =
         find_edit_candidates(s, map_.energy(), options_.candidates, [&](const PatchRegion& region) { return tower_height(s, region); });
-    tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+    parallel_for_each_index(static_cast<std::int64_t>(candidates.size()), [&](std::int64_t i) {
       progress.check();
       candidates[i].gain = measure_gain(candidates[i], progress.part(0, 0));
     });
