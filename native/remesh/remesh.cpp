@@ -46,10 +46,15 @@ constexpr double kMissedByFar = 2;
 
 bool may_be_minimal(const RemeshTask& task) { return task.options.base == BaseSize::Auto && !task.options.semi_regular; }
 
+// Does the surface stick out of the final mesh by so many widths of its quads?
+bool sticks_out(const RemeshTask& task, const Candidate& c, double widths) {
+  const double most = widths * mean_width(c.final_mesh);
+  return c.distance.hausdorff >= most && protrusion(task.source.repaired, task.source.placement, c.final_mesh) >= most;
+}
+
 bool misses_a_limb(const RemeshTask& task, const Candidate& c) {
   const bool likely = may_be_minimal(task) && task.source.topology.genus <= static_cast<double>(task.source.topology.components);
-  const double most = (likely ? kMissed : kMissedByFar) * mean_width(c.final_mesh);
-  return c.distance.hausdorff >= most && protrusion(task.source.repaired, task.source.placement, c.final_mesh) >= most;
+  return sticks_out(task, c, likely ? kMissed : kMissedByFar);
 }
 
 // What is tried where the first remesh has missed something: a minimal base, which has few quads and grows skin on a finer level, keeps limbs that a
@@ -64,15 +69,31 @@ Found<Candidate> another_candidate(const RemeshTask& task) {
   return c;
 }
 
+// A base of four times the quads, one level lower: it goes out into limbs in which every quad of a smaller one has another limb beside it.
+Found<Candidate> finer_candidate(const RemeshTask& task) {
+  Found<Candidate> c = search_candidate(task, {0, 1}, base_requests(task.options, false)).candidate;
+  if (c) c = {fitted(task, std::move(*c), true), {}};
+  return c;
+}
+
+bool may_be_finer(const RemeshTask& task) {
+  const RemeshOptions& options = task.options;
+  return options.base == BaseSize::Auto && options.refinement == Refinement::Uniform && plan_budget(options, task.source, {}).levels > 1;
+}
+
+void keep_better(Candidate& best, Found<Candidate> other) {
+  if (other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2) best = std::move(*other);
+}
+
 // The best of what is tried.
 Candidate best_candidate(const RemeshTask& task) {
   CandidateSearch first = search_candidate(task, {}, base_requests(task.options, false));
   if (!first.candidate) throw Error(first.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, first.candidate.reason);
   Candidate best = fitted(task, std::move(*first.candidate), true);
   if (task.options.error > 0 || !misses_a_limb(task, best)) return best;
-  Found<Candidate> other = another_candidate(task);
-  const bool better = other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2;
-  return better ? std::move(*other) : std::move(best);
+  keep_better(best, another_candidate(task));
+  if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
+  return best;
 }
 
 // Everything was computed around the origin: brings maps and meshes to where the input stands.
