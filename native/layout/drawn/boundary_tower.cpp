@@ -73,7 +73,7 @@ PatchedSurface grow_boundary_tower(const TriangleSurface& surface, const Boundar
   mapped.corners.resize(mapped.surface.mesh.faces.size());
   const std::optional<PatchRegion> region = make_disk(mapped.surface, {0});
   if (!region) throw Error(ErrorCode::Internal, "the quad on the boundary nodes is no disk");
-  const int cubes = tower.cubes > 0 ? tower.cubes : std::max(1, tower_height(mapped.surface, *region));
+  const int cubes = tower.cubes > 0 ? tower.cubes : std::max(1, tower_height(surface_of(mapped.surface, *region)));
   apply_edit(mapped, tower_edit(mapped.surface, *region, cubes));
   return std::move(mapped.surface);
 }

@@ -316,13 +316,12 @@ class FaceCutter {
 
   void cut(int f, const DiskLayout& filling) {
     LayoutFacePart part = cut_out(layout_, f);
-    PatchedSurface disk;
-    disk.mesh = std::move(part.mesh);
+    RegionSurface disk{std::move(part.mesh), {}, part.point, std::move(part.sides)};
     for (const int v : part.point) disk.source.push_back(layout_.source[v]);
     LayoutEdit edit;
     edit.quads = filling.quads;
     edit.inner_nodes = filling.inner_nodes;
-    const PatchedSurface piece = draw_quads(disk, part.sides, edit);
+    const PatchedSurface piece = draw_quads(disk, edit);
     const int first = static_cast<int>(out_.sides.size());
     std::vector<int> point = part.point;
     for (std::size_t v = point.size(); v < piece.mesh.points.size(); ++v) {

@@ -14,23 +14,6 @@
 namespace hybrid_mesh {
 namespace {
 
-// The region cut out, and the points at its corners.
-struct RegionPart {
-  TriangleSurface mesh;
-  std::vector<int> corners;
-};
-
-RegionPart cut_out(const PatchedSurface& surface, const PatchRegion& region) {
-  PatchedPart part = part_of(surface, region.patches);
-  RegionPart out;
-  for (const PatchSide& s : region.boundary) {
-    const auto patch = std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin();
-    out.corners.push_back(part.surface.sides[patch][s.side].front());
-  }
-  out.mesh = std::move(part.surface.mesh);
-  return out;
-}
-
 // Shortest ways along edges to one vertex.
 class EdgeWays {
  public:
@@ -72,9 +55,15 @@ Vec3 point_along(const std::vector<Vec3>& line, double fraction) {
   return line.back();
 }
 
-std::vector<Vec3> points_at(const RegionPart& part) {
+std::vector<int> corners_of(const RegionSurface& surface) {
+  std::vector<int> corners;
+  for (const std::vector<int>& side : surface.sides) corners.push_back(side.front());
+  return corners;
+}
+
+std::vector<Vec3> points_at(const TriangleSurface& mesh, const std::vector<int>& corners) {
   std::vector<Vec3> points;
-  for (const int v : part.corners) points.push_back(part.mesh.points[v]);
+  for (const int v : corners) points.push_back(mesh.points[v]);
   return points;
 }
 
@@ -163,25 +152,25 @@ LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region) {
   return outline;
 }
 
-LayoutOutline spread_outline(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit,
-                             const std::vector<std::vector<int>>& spokes) {
-  const RegionPart part = cut_out(surface, region);
-  const int corners = static_cast<int>(part.corners.size());
+LayoutOutline spread_outline(const RegionSurface& surface, const LayoutEdit& edit, const std::vector<std::vector<int>>& spokes) {
+  const TriangleSurface& mesh = surface.mesh;
+  const std::vector<int> corner = corners_of(surface);
+  const int corners = static_cast<int>(corner.size());
   LayoutOutline outline;
   outline.quads = edit.quads;
-  outline.nodes = points_at(part);
+  outline.nodes = points_at(mesh, corner);
   outline.nodes.resize(corners + edit.inner_nodes, Vec3::Zero());
   std::vector<char> placed(outline.nodes.size(), 0);
   std::fill(placed.begin(), placed.begin() + corners, 1);
-  const std::vector<BoundaryLoop> loops = boundary_loops(part.mesh);
-  const BoundaryLoop* loop = open_loop(loops, part.corners);
+  const std::vector<BoundaryLoop> loops = boundary_loops(mesh);
+  const BoundaryLoop* loop = open_loop(loops, corner);
   std::vector<double> opposite;
-  if (loop) opposite = opposite_arcs(*loop, points_at(part));
+  if (loop) opposite = opposite_arcs(*loop, points_at(mesh, corner));
   for (const std::vector<int>& spoke : spokes) {
     const bool open = spoke.back() >= corners;
     if (open && !loop) continue;
-    const int end = open ? vertex_before(*loop, opposite[spoke.front()]) : part.corners[spoke.back()];
-    std::vector<Vec3> way = EdgeWays(part.mesh, end).from(part.corners[spoke.front()]);
+    const int end = open ? vertex_before(*loop, opposite[spoke.front()]) : corner[spoke.back()];
+    std::vector<Vec3> way = EdgeWays(mesh, end).from(corner[spoke.front()]);
     if (open) way.push_back(loop->at(opposite[spoke.front()]));
     for (std::size_t i = 1; i < spoke.size(); ++i) {
       if (spoke[i] < corners) continue;
@@ -193,16 +182,17 @@ LayoutOutline spread_outline(const PatchedSurface& surface, const PatchRegion& r
   return outline;
 }
 
-PatchedSurface lay_out_region(const PatchedSurface& surface, LayoutOutline outline, const PatchRegion& region, const Progress& progress) {
-  const RegionPart part = cut_out(surface, region);
-  for (std::size_t k = 0; k < part.corners.size(); ++k) outline.nodes[k] = part.mesh.points[part.corners[k]];
-  const TransferredLayout laid = transfer_layout(part.mesh, outline, progress);
+PatchedSurface lay_out_region(const RegionSurface& surface, LayoutOutline outline, const Progress& progress) {
+  const std::vector<Vec3> corners = points_at(surface.mesh, corners_of(surface));
+  std::copy(corners.begin(), corners.end(), outline.nodes.begin());
+  const TransferredLayout laid = transfer_layout(surface.mesh, outline, progress);
   return laid.failure.empty() ? to_patched_surface(laid.layout) : PatchedSurface();
 }
 
-RowsPlace place_rows(const PatchedSurface& surface, const PatchRegion& region) {
-  const RegionPart part = cut_out(surface, region);
-  const std::vector<Vec3> points = points_at(part);
+RowsPlace place_rows(const RegionSurface& surface, const PatchRegion& region) {
+  const TriangleSurface& mesh = surface.mesh;
+  const std::vector<int> corner = corners_of(surface);
+  const std::vector<Vec3> points = points_at(mesh, corner);
   const int n = region.rims[1], m = static_cast<int>(points.size()) - n;
   double side = 0;
   for (int k = 0; k < n; ++k) side += (points[region.next(k)] - points[k]).norm() / n;
@@ -218,15 +208,15 @@ RowsPlace place_rows(const PatchedSurface& surface, const PatchRegion& region) {
     if (sum < least) least = sum, out.shift = shift;
   }
   // How far the boundaries are apart, on average over the first one's corners.
-  std::vector<int> second(part.corners.begin() + n, part.corners.end());
+  std::vector<int> second(corner.begin() + n, corner.end());
   if (m == 0) {
-    const std::vector<BoundaryLoop> loops = boundary_loops(part.mesh);
-    const BoundaryLoop* loop = open_loop(loops, part.corners);
+    const std::vector<BoundaryLoop> loops = boundary_loops(mesh);
+    const BoundaryLoop* loop = open_loop(loops, corner);
     for (int i = 0; loop && i < loop->size(); ++i) second.push_back(loop->vertex(i));
   }
-  const std::vector<double> distance = edge_distances(part.mesh, second);
+  const std::vector<double> distance = edge_distances(mesh, second);
   double mean = 0;
-  for (int k = 0; k < n; ++k) mean += distance[part.corners[k]] / n;
+  for (int k = 0; k < n; ++k) mean += distance[corner[k]] / n;
   out.rows = std::max(1, static_cast<int>(std::lround(mean / std::max(side, 1e-300))));
   return out;
 }

@@ -13,17 +13,16 @@ LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region);
 
 // The same for an edit of which no lines are known: along shortest ways for chains of nodes that lead from one boundary of the region to another,
 // as `spokes` tells, and between these and the rims as evenly as in a spring's equilibrium. Nodes alone.
-LayoutOutline spread_outline(const PatchedSurface& surface, const PatchRegion& region, const LayoutEdit& edit,
-                             const std::vector<std::vector<int>>& spokes);
+LayoutOutline spread_outline(const RegionSurface& surface, const LayoutEdit& edit, const std::vector<std::vector<int>>& spokes);
 
 // The region cut along the sides of an outline's quads; without patches if there is no way to lay them out.
-PatchedSurface lay_out_region(const PatchedSurface& surface, LayoutOutline outline, const PatchRegion& region, const Progress& progress);
+PatchedSurface lay_out_region(const RegionSurface& surface, LayoutOutline outline, const Progress& progress);
 
 // Which rows make an annulus' quads about square, and how they are turned the least.
 struct RowsPlace {
   int rows = 1;
   int shift = 0;  // see rows_edit()
 };
-RowsPlace place_rows(const PatchedSurface& surface, const PatchRegion& region);
+RowsPlace place_rows(const RegionSurface& surface, const PatchRegion& region);
 
 }  // namespace hybrid_mesh

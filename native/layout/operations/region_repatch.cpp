@@ -56,8 +56,9 @@ void snap_to_corners(std::vector<DrawnStroke>& strokes, const std::vector<Vec3>&
 // A region within the part of the level that is worked on, whose first patches it is.
 struct LocalRegion {
   const QuadGraph& level;
-  PatchRegion in_level;  // by the level's numbers
-  PatchRegion in_part;   // the same by those of the part: corner k is corner k
+  const QuadGraph& graph;  // of the part
+  PatchRegion in_level;    // by the level's numbers
+  PatchRegion in_part;     // the same by those of the part: corner k is corner k
 };
 
 // An edit of the region by the part's numbers, by the level's; and back.
@@ -79,12 +80,11 @@ std::vector<DrawnStroke> unit_strokes(std::vector<DrawnStroke> strokes, const Pl
 }
 
 // The curves as an edit of the region, by the part's numbers.
-DrawnEdit draw(const PatchedSurface& surface, const LocalRegion& local, std::vector<DrawnStroke> strokes, const Progress& progress) {
+DrawnEdit draw(const RegionSurface& surface, const LocalRegion& local, std::vector<DrawnStroke> strokes, const Progress& progress) {
   const PatchRegion& region = local.in_part;
-  const PatchedPart part = part_of(surface, region.patches);
-  const TriangleSurface& disk = part.surface.mesh;
+  const TriangleSurface& disk = surface.mesh;
   DrawnLayoutOptions options;
-  for (const PatchSide& s : region.boundary) options.boundary_nodes.push_back(part.surface.sides[s.patch][s.side].front());
+  for (std::size_t k = 0; k < surface.sides.size(); ++k) options.boundary_nodes.push_back(surface.corner(static_cast<int>(k)));
   std::vector<Vec3> corner;
   for (const int v : options.boundary_nodes) corner.push_back(disk.points[v]);
   snap_to_corners(strokes, corner);
@@ -105,7 +105,7 @@ DrawnEdit draw(const PatchedSurface& surface, const LocalRegion& local, std::vec
 }
 
 // Rows of quads for an annulus. Where its boundaries are joined with the fewest sides may leave no room: then there are more rows.
-LayoutEdit rows_in(const PatchedSurface& surface, const LocalRegion& local, int height, std::vector<std::vector<int>>& spokes,
+LayoutEdit rows_in(const RegionSurface& surface, const LocalRegion& local, int height, std::vector<std::vector<int>>& spokes,
                    const Progress& progress) {
   constexpr int tries = 3;
   if (!is_annulus(local.in_level)) throw Error(ErrorCode::InvalidInput, "rows need a region that is a ring, with two boundaries and no handle");
@@ -119,12 +119,12 @@ LayoutEdit rows_in(const PatchedSurface& surface, const LocalRegion& local, int 
   }
 }
 
-DrawnEdit even_in(const PatchedSurface& surface, const LocalRegion& local, int quads, const Progress& progress) {
+DrawnEdit even_in(const RegionSurface& surface, const LocalRegion& local, int quads, const Progress& progress) {
   const int wanted = quads > 0 ? quads : static_cast<int>(local.in_part.patches.size());
   std::string defect = "no even quads with its boundary are found: try another number of them, or a larger region";
   constexpr std::uint64_t tries = 4;
   for (std::uint64_t seed = 1; seed <= tries; ++seed) {
-    std::optional<DrawnEdit> drawn = even_edit(surface, local.in_part, wanted, seed, progress);
+    std::optional<DrawnEdit> drawn = even_edit(local.graph, local.in_part, surface, wanted, seed, progress);
     if (!drawn) continue;
     defect = find_edit_defect(local.level, local.in_level, in_level(drawn->edit, local));
     if (defect.empty()) return std::move(*drawn);
@@ -133,7 +133,7 @@ DrawnEdit even_in(const PatchedSurface& surface, const LocalRegion& local, int q
 }
 
 // New quads that need no curves, by the part's numbers. Without a piece they may be drawn anywhere in a disk.
-DrawnEdit find_edit(const PatchedSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
+DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
   using Kind = RegionPattern::Kind;
   const QuadGraph& level = local.level;
   const PatchRegion& region = local.in_level;
@@ -151,14 +151,14 @@ DrawnEdit find_edit(const PatchedSurface& surface, const LocalRegion& local, con
     edit = rows_in(surface, local, pattern.height, spokes, progress);
   } else {
     if (!region.is_disk()) throw Error(ErrorCode::InvalidInput, "cubes are grown on a disk of quads alone");
-    edit = tower_edit(level, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface, local.in_part)));
+    edit = tower_edit(level, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface)));
   }
   if (const std::string defect = find_filling_defect(edit.quads, region); !defect.empty())
     throw Error(ErrorCode::InvalidInput, "its new quads " + defect);
   if (const std::string defect = find_edit_defect(level, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
   DrawnEdit out{in_part(std::move(edit), local), {}};
   if (region.is_disk()) return out;
-  out.piece = lay_out_region(surface, spread_outline(surface, local.in_part, out.edit, spokes), local.in_part, progress);
+  out.piece = lay_out_region(surface, spread_outline(surface, out.edit, spokes), progress);
   if (out.piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
   return out;
 }
@@ -213,12 +213,13 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   progress(0.2);
 
   // The region's quads are the part's first.
-  LocalRegion local{level, std::move(*region), {}};
+  LocalRegion local{level, glued.mapped.surface, std::move(*region), {}};
   std::vector<int> first(repatch.patches.size());
   std::iota(first.begin(), first.end(), 0);
   std::vector<PatchSide> starts = local.in_level.starts();
   for (PatchSide& start : starts) start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
   local.in_part = *make_region(part.surface, first, starts, loops);
+  RegionSurface surface = surface_of(part.surface, local.in_part);
 
   MappedEdit out;
   const double scale = state.placement.diagonal * std::sqrt(static_cast<double>(level.patch_count()) / state.area);
@@ -226,10 +227,10 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   for (std::size_t k = 0; k < energies.size(); ++k)
     if (repatch.buffer_rings > 0 || k < repatch.patches.size()) out.energy_before += energies[k];
   DrawnEdit edit = repatch.pattern.kind == RegionPattern::Kind::Drawn
-                       ? draw(part.surface, local, unit_strokes(repatch.pattern.strokes, state.placement), progress.part(0.2, 0.4))
-                       : find_edit(part.surface, local, repatch.pattern, progress.part(0.2, 0.4));
+                       ? draw(surface, local, unit_strokes(repatch.pattern.strokes, state.placement), progress.part(0.2, 0.4))
+                       : find_edit(surface, local, repatch.pattern, progress.part(0.2, 0.4));
   out.edit = in_level(edit.edit, local);
-  const LayoutChange change = edit.piece.patch.empty() ? apply_edit(part, edit.edit) : apply_edit(part, std::move(edit));
+  const LayoutChange change = edit.piece.patch.empty() ? apply_edit(part, edit.edit) : apply_edit(part, std::move(edit), std::move(surface));
   map_patches(part.surface, change.added, part.corners, progress.part(0.4, 0.5));
 
   // The numbers that the part's quads have in the level afterwards.

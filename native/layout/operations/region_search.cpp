@@ -51,7 +51,7 @@ int tower_height_of(const LevelState& state, const PatchRegion& region) {
   std::vector<int> all(region.patches.size());
   std::iota(all.begin(), all.end(), 0);
   const std::optional<PatchRegion> local = make_disk(glued.mapped.surface, all);
-  return local ? tower_height(glued.mapped.surface, *local) : 0;
+  return local ? tower_height(surface_of(glued.mapped.surface, *local)) : 0;
 }
 
 RegionRepatch repatch_by(const LayoutEdit& edit) {

@@ -27,11 +27,11 @@ constexpr std::array<double, 3> kRoom{0.02, 1e-3, 1e-5};
 
 class QuadDrawing {
  public:
-  QuadDrawing(PatchedSurface& disk, const std::vector<std::vector<int>>& sides, const LayoutEdit& edit) : disk_(disk), sides_(sides), edit_(edit) {}
+  QuadDrawing(RegionSurface& disk, const LayoutEdit& edit) : disk_(disk), edit_(edit) {}
 
   PatchedSurface run() {
     embed();
-    const PatchedSurface disk = disk_;
+    const RegionSurface disk = disk_;
     const std::vector<Vec2> uv = uv_;
     std::string failure;
     for (const double room : kRoom) {
@@ -52,14 +52,14 @@ class QuadDrawing {
   TriangleSurface& disk() { return disk_.mesh; }
 
   void embed() {
-    const int n = static_cast<int>(sides_.size());
+    const int n = static_cast<int>(disk_.sides.size());
     std::vector<DiskSide> sides;
     for (int k = 0; k < n; ++k) {
-      sides.push_back({sides_[k], {}});
+      sides.push_back({disk_.sides[k], {}});
       const double angle = 2 * std::numbers::pi * k / n;
       polygon_.push_back(Vec2(std::cos(angle), std::sin(angle)));
-      rim_.insert(rim_.end(), sides_[k].begin(), sides_[k].end() - 1);
     }
+    rim_ = disk_.rim();
     ConvexMap convex_map(disk());
     std::vector<int> faces;
     for (;;) {
@@ -208,9 +208,9 @@ class QuadDrawing {
   }
 
   PatchedSurface cut() {
-    const int n = static_cast<int>(sides_.size());
+    const int n = static_cast<int>(disk_.sides.size());
     QuadLayout layout;
-    for (const std::vector<int>& side : sides_) layout.node_vertex.push_back(side.front());
+    for (const std::vector<int>& side : disk_.sides) layout.node_vertex.push_back(side.front());
     layout.node_vertex.insert(layout.node_vertex.end(), inner_vertex_.begin(), inner_vertex_.end());
     std::map<std::pair<int, int>, int> curve_of;
     for (const auto& nodes : edit_.quads) {
@@ -228,8 +228,7 @@ class QuadDrawing {
     return cut_along_segments(disk(), uv_, layout);
   }
 
-  PatchedSurface& disk_;
-  const std::vector<std::vector<int>>& sides_;
+  RegionSurface& disk_;
   const LayoutEdit& edit_;
   std::vector<Vec2> uv_, polygon_;
   std::vector<int> rim_, inner_vertex_;
@@ -237,9 +236,7 @@ class QuadDrawing {
 
 }  // namespace
 
-PatchedSurface draw_quads(PatchedSurface& disk, const std::vector<std::vector<int>>& sides, const LayoutEdit& edit) {
-  return QuadDrawing(disk, sides, edit).run();
-}
+PatchedSurface draw_quads(RegionSurface& disk, const LayoutEdit& edit) { return QuadDrawing(disk, edit).run(); }
 
 PointSource traced(const PointSource& point, const std::vector<PointSource>& sources) {
   std::array<const PointSource*, 3> of{nullptr, nullptr, nullptr};

@@ -3,15 +3,14 @@
 
 #include <vector>
 
-#include "layout/regions/region_layout.h"
+#include "layout/regions/region_surface.h"
 
 namespace hybrid_mesh {
 
 // Draws an edit's new quads in a disk, which is mapped to a convex polygon; in it their sides are straight, or in rings around its tip for a tower.
-// `disk`: mesh and sources, which get further points; `sides`: the points along the boundary from each corner to the next, both ends included,
-// counter-clockwise. Returns the disk cut along the quads' sides: a patch each, its sources name points, its faces faces of `disk`. The boundary
-// stays as it is. Throws NoMap if the map degenerates.
-PatchedSurface draw_quads(PatchedSurface& disk, const std::vector<std::vector<int>>& sides, const LayoutEdit& edit);
+// `disk` gets further points in its inside. Returns it cut along the quads' sides: a patch each, its sources name points, its faces faces of `disk`.
+// The boundary stays as it is. Throws NoMap if the map degenerates.
+PatchedSurface draw_quads(RegionSurface& disk, const LayoutEdit& edit);
 
 // The source of a point that was given in points which have sources themselves.
 PointSource traced(const PointSource& point, const std::vector<PointSource>& sources);

@@ -16,26 +16,10 @@
 
 namespace hybrid_mesh {
 
-namespace {
-
-// The region's boundary in a part made of its patches: all vertices along it.
-std::vector<int> rim_of(const PatchedPart& part, const PatchRegion& region) {
-  std::vector<int> rim;
-  for (const PatchSide& s : region.boundary) {
-    const auto patch = std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin();
-    const std::vector<int>& side = part.surface.sides[patch][s.side];
-    rim.insert(rim.end(), side.begin(), side.end() - 1);
-  }
-  return rim;
-}
-
-}  // namespace
-
-int tower_height(const PatchedSurface& surface, const PatchRegion& region) {
-  const PatchedPart part = part_of(surface, region.patches);
-  const std::vector<int> rim = rim_of(part, region);
-  const std::vector<double> depth = edge_distances(part.surface.mesh, rim);
-  const double side = loop_length(part.surface.mesh, rim) / static_cast<double>(region.corners.size());
+int tower_height(const RegionSurface& surface) {
+  const std::vector<int> rim = surface.rim();
+  const std::vector<double> depth = edge_distances(surface.mesh, rim);
+  const double side = loop_length(surface.mesh, rim) / static_cast<double>(surface.sides.size());
   return static_cast<int>(std::lround(*std::max_element(depth.begin(), depth.end()) / std::max(side, 1e-300)));
 }
 
@@ -49,9 +33,7 @@ class Relayout {
   LayoutChange run() {
     take_region();
     if (!region_.is_disk()) throw NoMap("quads are drawn without lines in a disk alone");
-    std::vector<std::vector<int>> sides;
-    for (const PatchSide& side : region_.boundary) sides.push_back(part_.surface.sides[local_patch(side.patch)][side.side]);
-    piece_ = draw_quads(part_.surface, sides, edit_);
+    piece_ = draw_quads(part_, edit_);
     return merge();
   }
 
@@ -61,15 +43,19 @@ class Relayout {
     return merge();
   }
 
+  LayoutChange run(PatchedSurface piece, RegionSurface surface) {
+    part_ = std::move(surface);
+    piece_ = std::move(piece);
+    return merge();
+  }
+
  private:
   void take_region() {
     std::optional<PatchRegion> region = make_region(mapped_.surface, edit_.patches, edit_.starts, FreeLoops::Open);
     if (!region) throw Error(ErrorCode::Internal, "there is no such region to be laid out anew");
     region_ = std::move(*region);
-    part_ = part_of(mapped_.surface, edit_.patches);
+    part_ = surface_of(mapped_.surface, region_);
   }
-
-  int local_patch(int q) const { return static_cast<int>(std::find(edit_.patches.begin(), edit_.patches.end(), q) - edit_.patches.begin()); }
 
   LayoutChange merge() {
     PatchedSurface& whole = mapped_.surface;
@@ -83,13 +69,13 @@ class Relayout {
     out.source = std::move(whole.source);
     std::vector<int> point(piece_.mesh.points.size());
     for (std::size_t v = 0; v < point.size(); ++v) {
-      if (v < part_.point.size()) {
+      if (v < part_.point.size() && part_.point[v] >= 0) {
         point[v] = part_.point[v];
         continue;
       }
       point[v] = static_cast<int>(mesh.points.size());
       mesh.points.push_back(piece_.mesh.points[v]);
-      out.source.push_back(traced(piece_.source[v], part_.surface.source));
+      out.source.push_back(traced(piece_.source[v], part_.source));
     }
     std::vector<std::array<Vec2, 3>> corners;
     for (std::size_t f = 0; f < whole.mesh.faces.size(); ++f) {
@@ -102,7 +88,7 @@ class Relayout {
     for (std::size_t f = 0; f < piece_.mesh.faces.size(); ++f) {
       const std::array<int, 3>& c = piece_.mesh.faces[f];
       mesh.faces.push_back({point[c[0]], point[c[1]], point[c[2]]});
-      mesh.source_face.push_back(part_.surface.mesh.source_face[piece_.mesh.source_face[f]]);
+      mesh.source_face.push_back(part_.mesh.source_face[piece_.mesh.source_face[f]]);
       out.patch.push_back(change.added[piece_.patch[f]]);
       corners.push_back({Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)});
     }
@@ -121,7 +107,7 @@ class Relayout {
   MappedSurface& mapped_;
   const LayoutEdit& edit_;
   PatchRegion region_;
-  PatchedPart part_;
+  RegionSurface part_;
   PatchedSurface piece_;
 };
 
@@ -131,14 +117,17 @@ LayoutChange apply_edit(MappedSurface& mapped, const LayoutEdit& edit) { return 
 
 LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit drawn) { return Relayout(mapped, drawn.edit).run(std::move(drawn.piece)); }
 
+LayoutChange apply_edit(MappedSurface& mapped, DrawnEdit drawn, RegionSurface surface) {
+  return Relayout(mapped, drawn.edit).run(std::move(drawn.piece), std::move(surface));
+}
+
 namespace {
 
-std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, double slack, std::uint64_t seed,
-                                        const Progress& progress) {
-  const PatchedPart part = part_of(surface, region.patches);
-  const TriangleSurface& disk = part.surface.mesh;
+std::optional<DrawnEdit> decimated_edit(const QuadGraph& graph, const PatchRegion& region, const RegionSurface& surface, double quads, double slack,
+                                        std::uint64_t seed, const Progress& progress) {
+  const TriangleSurface& disk = surface.mesh;
   const int n = static_cast<int>(region.corners.size());
-  const std::vector<int> wanted = regular_quads(surface, region);
+  const std::vector<int> wanted = regular_quads(graph, region);
   std::vector<int> corner_of(disk.points.size(), -1);
   DecimationOptions decimation;
   decimation.seed = seed;
@@ -148,9 +137,7 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
   options.seed = seed;
   options.boundary_quads.assign(disk.points.size(), 2);
   for (int k = 0; k < n; ++k) {
-    const PatchSide& s = region.boundary[k];
-    const int local = static_cast<int>(std::find(region.patches.begin(), region.patches.end(), s.patch) - region.patches.begin());
-    const int v = part.surface.sides[local][s.side].front();
+    const int v = surface.corner(k);
     corner_of[v] = k;
     decimation.fixed[v] = 1;
     options.boundary_quads[v] = wanted[k];
@@ -173,7 +160,7 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
     number[k] = corner >= 0 ? corner : n + out.edit.inner_nodes++;
   }
   // No two nodes may be joined twice, not even by a side within the region and one outside.
-  std::set<std::pair<int, int>> joined = joined_outside(surface, region);
+  std::set<std::pair<int, int>> joined = joined_outside(graph, region);
   for (const QuadLayout::Quad& quad : layout.quads) {
     std::array<int, 4> nodes;
     for (int i = 0; i < 4; ++i) nodes[i] = number[quad.nodes[i]];
@@ -187,12 +174,12 @@ std::optional<DrawnEdit> decimated_edit(const PatchedSurface& surface, const Pat
 
 }  // namespace
 
-std::optional<DrawnEdit> even_edit(const PatchedSurface& surface, const PatchRegion& region, double quads, std::uint64_t seed,
+std::optional<DrawnEdit> even_edit(const QuadGraph& graph, const PatchRegion& region, const RegionSurface& surface, double quads, std::uint64_t seed,
                                    const Progress& progress) {
   // Whether the triangles beside a boundary that must stay find pairs is a matter of luck, and more of them have more of it.
   for (const double slack : {2.6, 3.1, 3.6, 4.1})
     for (const std::uint64_t other : {0, 1})
-      if (std::optional<DrawnEdit> edit = decimated_edit(surface, region, quads, slack, 2 * seed + other, progress)) return edit;
+      if (std::optional<DrawnEdit> edit = decimated_edit(graph, region, surface, quads, slack, 2 * seed + other, progress)) return edit;
   return std::nullopt;
 }
 

@@ -19,7 +19,7 @@ class EditSearch {
   std::vector<LayoutEdit> run(const Progress& progress) const {
     const PatchedSurface& s = map_.mapped().surface;
     std::vector<EditCandidate> candidates =
-        find_edit_candidates(s, map_.energy(), options_.candidates, [&](const PatchRegion& region) { return tower_height(s, region); });
+        find_edit_candidates(s, map_.energy(), options_.candidates, [&](const PatchRegion& region) { return tower_height(surface_of(s, region)); });
     parallel_for_each_index(static_cast<std::int64_t>(candidates.size()), [&](std::int64_t i) {
       progress.check();
       candidates[i].gain = measure_gain(candidates[i], progress.part(0, 0));

@@ -73,7 +73,7 @@ EvenRegions find_even_regions(const TrialMap& map, const EvenRegionsOptions& opt
   EvenRegions found;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const double quads = wanted(i, count);
-    std::optional<DrawnEdit> edit = even_edit(s, regions[i], quads, 1, progress);
+    std::optional<DrawnEdit> edit = even_edit(s, regions[i], surface_of(s, regions[i]), quads, 1, progress);
     if (!edit) continue;
     found.edits.push_back({edit->edit, 0, true, quads, outline_of(*edit, regions[i]), {}, {}});
     count += edit->edit.growth();

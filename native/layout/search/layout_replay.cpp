@@ -32,10 +32,11 @@ PatchRegion fitting_region(const QuadGraph& s, const LayoutEdit& edit) {
 // map puts them.
 DrawnEdit even_again(const MappedSurface& mapped, const LayoutScript::Edit& even, const Progress& progress) {
   const PatchRegion region = fitting_region(mapped.surface, even.edit);
-  std::optional<DrawnEdit> found = even.even_quads > 0 ? even_edit(mapped.surface, region, even.even_quads, 1, progress) : std::nullopt;
+  std::optional<DrawnEdit> found =
+      even.even_quads > 0 ? even_edit(mapped.surface, region, surface_of(mapped.surface, region), even.even_quads, 1, progress) : std::nullopt;
   if (found && found->edit.quads == even.edit.quads) return std::move(*found);
   DrawnEdit edit{even.edit, {}};
-  if (!even.outline.nodes.empty()) edit.piece = lay_out_region(mapped.surface, even.outline, region, progress);
+  if (!even.outline.nodes.empty()) edit.piece = lay_out_region(surface_of(mapped.surface, region), even.outline, progress);
   return edit;
 }
 

@@ -286,7 +286,7 @@ TEST(EvenEdit, LaysADiskOutAnewWithinItsBoundary) {
       if (in[p]) patches.push_back(p);
     const auto region = make_region(s, patches);
     if (!region) continue;
-    std::optional<DrawnEdit> drawn = even_edit(s, *region, 1.5 * static_cast<double>(patches.size()), 1, Progress(context));
+    std::optional<DrawnEdit> drawn = even_edit(s, *region, surface_of(s, *region), 1.5 * static_cast<double>(patches.size()), 1, Progress(context));
     if (!drawn) continue;
     ++applied;
     const int growth = drawn->edit.growth();
