@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "base/context.h"
+#include "base/found.h"
+#include "surface/triangle_surface.h"
+
+namespace hybrid_mesh {
+
+// Where a loop's disk lies: that of a handle inside the solid, that of a tunnel outside. Told by the winding number's magnitude, so that a scan
+// may be turned inside out.
+enum class LoopKind { Handle, Tunnel };
+
+struct SurfaceLoop {
+  std::vector<int> points;  // a simple cycle along edges; the first point is not repeated
+  double length = 0;
+  LoopKind kind = LoopKind::Handle;
+};
+
+struct LoopOptions {
+  int starts = 3;        // shortest-path trees from which loops are taken, each round; more find shorter loops
+  int tightenings = 12;  // rounds in which a loop is replaced by a shorter one near it
+  // How many times longer than the shortest a loop may be if its cap meets the surface less; 1: the shortest loops are taken.
+  double detour = 1;
+  // Longer loops are not looked for. Infinite: there is a loop for each unit of genus.
+  double longest = 1e300;
+};
+
+// Short disjoint loops that separate nothing together, as many as the surface's genus, summed over its components: cut along them and capped, every
+// component has genus 0. Boundary loops count as capped, and no loop touches one. The shortest come first, after those of `given`: cycles along
+// edges that are kept as they are. The same for any number of threads.
+// Throws Error{InvalidInput} that names a given loop which is no simple cycle of edges, meets a boundary or another one, or separates the surface
+// together with those before it; NoMap if the triangles leave no room for as many disjoint loops: a finer surface has them.
+std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<std::vector<int>>& given, const LoopOptions& options,
+                                    const Progress& progress);
+
+// The boundary loops, each as the points that its half-edges (those without an opposite) leave, in their order.
+std::vector<std::vector<int>> boundary_loops(const TriangleSurface& surface);
+
+// Of the edges between consecutive points, the last and the first included.
+double loop_length(const TriangleSurface& surface, const std::vector<int>& loop);
+
+}  // namespace hybrid_mesh
