@@ -3,6 +3,8 @@
 #include "topology/loop_graph.h"
 
 #include <algorithm>
+#include <functional>
+#include <tuple>
 
 #include "topology/surface_loops.h"
 
@@ -17,7 +19,7 @@ TriangleSurface with_fans(const TriangleSurface& surface) {
   closed.points = surface.points;
   closed.faces = surface.faces;
   closed.opposite = surface.opposite;
-  for (const std::vector<int>& loop : boundary_loops(surface)) {
+  for (const std::vector<int>& loop : boundary_cycles(surface)) {
     const int apex = static_cast<int>(closed.points.size());
     closed.points.push_back(surface.points[loop[0]]);
     for (std::size_t i = 0; i < loop.size(); ++i) closed.faces.push_back({loop[(i + 1) % loop.size()], loop[i], apex});
@@ -33,7 +35,7 @@ std::uint64_t scrambled(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-bool later(const std::pair<double, int>& a, const std::pair<double, int>& b) { return a > b; }
+constexpr std::greater<std::pair<double, int>> later;
 
 }  // namespace
 
@@ -203,8 +205,8 @@ void LoopSearch::grow_tree(int root, const Progress& progress) {
 
 int LoopSearch::common_stem(int a, int b) const {
   while (a != b) {
-    int& later = nodes_[a].order > nodes_[b].order ? a : b;
-    later = nodes_[later].parent;
+    int& farther = nodes_[a].order > nodes_[b].order ? a : b;
+    farther = nodes_[farther].parent;
   }
   return a;
 }

@@ -200,7 +200,7 @@ void LoopFinder::polish(const Progress& progress) {
 
 }  // namespace
 
-std::vector<std::vector<int>> boundary_loops(const TriangleSurface& surface) {
+std::vector<std::vector<int>> boundary_cycles(const TriangleSurface& surface) {
   std::vector<std::vector<int>> loops;
   std::vector<char> done(surface.opposite.size(), 0);
   for (std::size_t start = 0; start < done.size(); ++start) {
@@ -216,7 +216,7 @@ std::vector<std::vector<int>> boundary_loops(const TriangleSurface& surface) {
   return loops;
 }
 
-double loop_length(const TriangleSurface& surface, const std::vector<int>& loop) {
+double cycle_length(const TriangleSurface& surface, const std::vector<int>& loop) {
   double length = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) length += (surface.points[loop[i]] - surface.points[loop[(i + 1) % loop.size()]]).norm();
   return length;
@@ -228,7 +228,7 @@ std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::v
   progress.check();
   std::vector<SurfaceLoop> loops;
   for (std::vector<int>& points : LoopFinder(surface, options).find(given, progress)) {
-    const double length = loop_length(surface, points);
+    const double length = cycle_length(surface, points);
     loops.push_back({std::move(points), length, LoopKind::Handle});
   }
   std::stable_sort(loops.begin() + static_cast<std::ptrdiff_t>(given.size()), loops.end(),

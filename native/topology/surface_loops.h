@@ -37,9 +37,9 @@ std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::v
                                     const Progress& progress);
 
 // The boundary loops, each as the points that its half-edges (those without an opposite) leave, in their order.
-std::vector<std::vector<int>> boundary_loops(const TriangleSurface& surface);
+std::vector<std::vector<int>> boundary_cycles(const TriangleSurface& surface);
 
 // Of the edges between consecutive points, the last and the first included.
-double loop_length(const TriangleSurface& surface, const std::vector<int>& loop);
+double cycle_length(const TriangleSurface& surface, const std::vector<int>& loop);
 
 }  // namespace hybrid_mesh
