@@ -91,13 +91,17 @@ void LoopGraph::find_components() {
   }
 }
 
+const LoopGraph::Arc* LoopGraph::arc(int from, int to) const {
+  const Arc* found = std::find_if(begin(from), end(from), [&](const Arc& arc) { return arc.to == to; });
+  return found == end(from) ? nullptr : found;
+}
+
 BitVector LoopGraph::bits_of(const std::vector<int>& loop) const {
   BitVector bits((cohomology_.dimension() + 63) / 64, 0);
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const int next = loop[(i + 1) % loop.size()];
-    const Arc* arc = std::find_if(begin(loop[i]), end(loop[i]), [&](const Arc& a) { return a.to == next; });
-    if (arc == end(loop[i]) || arc->chain < 0) continue;
-    const BitVector& chain = cohomology_.chains()[arc->chain];
+    const Arc* step = arc(loop[i], loop[(i + 1) % loop.size()]);
+    if (!step || step->chain < 0) continue;
+    const BitVector& chain = cohomology_.chains()[step->chain];
     for (std::size_t w = 0; w < bits.size(); ++w) bits[w] ^= chain[w];
   }
   return bits;
@@ -268,9 +272,8 @@ std::vector<std::vector<int>> LoopSearch::basis(const std::vector<int>& roots, c
 double LoopSearch::length_of(const std::vector<int>& loop) const {
   double length = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const int v = loop[i], next = loop[(i + 1) % loop.size()];
-    const auto* arc = std::find_if(graph_.begin(v), graph_.end(v), [&](const LoopGraph::Arc& a) { return a.to == next; });
-    if (arc != graph_.end(v)) length += arc->length;
+    const LoopGraph::Arc* step = graph_.arc(loop[i], loop[(i + 1) % loop.size()]);
+    if (step) length += step->length;
   }
   return length;
 }

@@ -33,6 +33,7 @@ class LoopGraph {
   const Vec3& at(int point) const { return points_[point]; }
   const Arc* begin(int point) const { return arcs_.data() + first_[point]; }
   const Arc* end(int point) const { return arcs_.data() + first_[point + 1]; }
+  const Arc* arc(int from, int to) const;  // null if there is no such edge; one at a boundary may be found in one direction only
   // Of the whole surface, less those of loops longer than any that is looked for.
   int genus() const { return cohomology_.dimension() / 2; }
   bool wall(int point) const { return wall_[point]; }

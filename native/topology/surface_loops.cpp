@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <tuple>
 
@@ -81,19 +82,15 @@ void LoopFinder::take_given(const std::vector<std::vector<int>>& given) {
     const std::vector<int>& loop = given[i];
     const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::InvalidInput, "loop " + std::to_string(i) + " " + why); };
     if (loop.size() < 3) refuse("has fewer than three points");
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const int v = loop[k], next = loop[(k + 1) % loop.size()];
+    for (const int v : loop)
       if (v < 0 || v >= graph_.point_count()) refuse("has the point " + std::to_string(v) + ", which does not exist");
-      if (std::none_of(graph_.begin(v), graph_.end(v), [&](const LoopGraph::Arc& arc) { return arc.to == next; }) &&
-          std::none_of(graph_.begin(next == v || next < 0 || next >= graph_.point_count() ? v : next),
-                       graph_.end(next == v || next < 0 || next >= graph_.point_count() ? v : next),
-                       [&](const LoopGraph::Arc& arc) { return arc.to == v; }))
-        refuse("has no edge between its points " + std::to_string(v) + " and " + std::to_string(next));
-    }
     std::vector<int> sorted = loop;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) refuse("passes through a point twice");
     if (graph_.touches_wall(loop)) refuse("touches a boundary or a loop before it");
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      if (const int v = loop[k], next = loop[(k + 1) % loop.size()]; !graph_.arc(v, next))
+        refuse("has no edge between its points " + std::to_string(v) + " and " + std::to_string(next));
     if (!graph_.take(loop)) refuse("separates the surface, alone or together with loops before it");
     taken_.push_back(loop);
   }
@@ -136,7 +133,7 @@ bool LoopFinder::take_all(const Progress& progress) {
   const auto first = taken_.size();
   while (static_cast<int>(taken_.size()) < genus) {
     progress(static_cast<double>(taken_.size() - first) / (genus - static_cast<double>(first)));
-    if (!take_some(progress)) return options_.longest < std::numeric_limits<double>::max() / 2;
+    if (!take_some(progress)) return std::isfinite(options_.longest);
   }
   return true;
 }

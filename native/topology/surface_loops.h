@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "base/context.h"
@@ -24,8 +25,8 @@ struct LoopOptions {
   int tightenings = 12;  // rounds in which a loop is replaced by a shorter one near it
   // How many times longer than the shortest a loop may be if its cap meets the surface less; 1: the shortest loops are taken.
   double detour = 1;
-  // Longer loops are not looked for. Infinite: there is a loop for each unit of genus.
-  double longest = 1e300;
+  // Longer loops are left out. Infinite: there is a loop for each unit of genus.
+  double longest = std::numeric_limits<double>::infinity();
 };
 
 // Short disjoint loops that separate nothing together, as many as the surface's genus, summed over its components: cut along them and capped, every

@@ -38,13 +38,16 @@ inline void join_faces(TriangleSurface& s, int f, int g, int rows, double lift) 
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3;
       const std::array<int, 3> one{ring[k], ring[l], next[l]}, two{ring[k], next[l], next[k]};
-      if (row == 1 && k == 0)
+      if (row == 1 && k == 0) {
         s.faces[f] = one;
-      else if (row == rows && k == 0)
-        s.faces[g] = one;
-      else
+      } else {
         s.faces.push_back(one);
-      s.faces.push_back(two);
+      }
+      if (row == rows && k == 0) {
+        s.faces[g] = two;
+      } else {
+        s.faces.push_back(two);
+      }
     }
     ring = next;
   }
