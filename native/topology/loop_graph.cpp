@@ -157,7 +157,7 @@ int LoopSearch::settle_next() {
   return v;
 }
 
-std::vector<int> LoopSearch::shortest(int base, double bound, const Progress& progress) {
+std::vector<int> LoopSearch::shortest(int base, double bound, const Progress& progress, std::uint64_t wanted) {
   if (graph_.wall(base)) return {};
   ++run_;
   heap_.clear();
@@ -178,7 +178,7 @@ std::vector<int> LoopSearch::shortest(int base, double bound, const Progress& pr
       const std::uint64_t key = node.key ^ graph_.key(arc->chain);
       const double beyond = distance + arc->length;
       if (other.stamp == 2 * run_) {
-        if (key != other.key && beyond + other.distance < bound) {
+        if (key != other.key && beyond + other.distance < bound && (wanted == 0 || (key ^ other.key) == wanted)) {
           bound = beyond + other.distance;
           closing = {v, arc->to};
         }
@@ -188,6 +188,31 @@ std::vector<int> LoopSearch::shortest(int base, double bound, const Progress& pr
     }
   }
   return closing[0] < 0 ? std::vector<int>() : loop_of(closing[0], closing[1]);
+}
+
+std::vector<int> LoopSearch::path(int from, int to, double bound, const Progress& progress) {
+  if (graph_.wall(from) || graph_.wall(to)) return {};
+  ++run_;
+  heap_.clear();
+  settled_.clear();
+  reach(from, -1, 0, 0);
+  for (int steps = 1; !heap_.empty() && nodes_[to].stamp != 2 * run_; ++steps) {
+    if (steps % steps_between_checks == 0) progress.check();
+    const double distance = heap_.front().first;
+    const int v = settle_next();
+    if (v < 0) continue;
+    for (const LoopGraph::Arc* arc = graph_.begin(v); arc != graph_.end(v); ++arc) {
+      const Node& other = nodes_[arc->to];
+      const double beyond = distance + arc->length;
+      if (graph_.wall(arc->to) || other.stamp == 2 * run_ || !(beyond < bound)) continue;
+      if (other.stamp != 2 * run_ - 1 || beyond < other.distance) reach(arc->to, v, beyond, 0);
+    }
+  }
+  std::vector<int> points;
+  if (nodes_[to].stamp != 2 * run_) return points;
+  for (int v = to; v >= 0; v = nodes_[v].parent) points.push_back(v);
+  std::reverse(points.begin(), points.end());
+  return points;
 }
 
 void LoopSearch::grow_tree(int root, const Progress& progress) {
@@ -276,6 +301,15 @@ double LoopSearch::length_of(const std::vector<int>& loop) const {
     if (step) length += step->length;
   }
   return length;
+}
+
+std::uint64_t LoopSearch::key_of(const std::vector<int>& loop) const {
+  std::uint64_t key = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const LoopGraph::Arc* step = graph_.arc(loop[i], loop[(i + 1) % loop.size()]);
+    if (step) key ^= graph_.key(step->chain);
+  }
+  return key;
 }
 
 }  // namespace hybrid_mesh

@@ -72,11 +72,15 @@ class LoopSearch {
   explicit LoopSearch(const LoopGraph& graph) : graph_(graph), nodes_(graph.point_count()) {}
 
   // The shortest loop through `base` that neither touches a wall nor separates, alone or with walls, if it is shorter than `bound`. Else empty.
-  std::vector<int> shortest(int base, double bound, const Progress& progress);
+  // With a key other than 0: of those along the tree of shortest paths from `base` that have this key.
+  std::vector<int> shortest(int base, double bound, const Progress& progress, std::uint64_t key = 0);
+  // The shortest path off walls, both ends included, if it is shorter than `bound`. Else empty.
+  std::vector<int> path(int from, int to, double bound, const Progress& progress);
   // A basis of such loops, each of which runs along the tree of shortest paths from a root but for one edge; `roots` has a point a component.
   std::vector<std::vector<int>> basis(const std::vector<int>& roots, const Progress& progress);
 
   double length_of(const std::vector<int>& loop) const;
+  std::uint64_t key_of(const std::vector<int>& loop) const;
 
  private:
   struct Node {

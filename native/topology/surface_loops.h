@@ -37,6 +37,19 @@ struct LoopOptions {
 std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<std::vector<int>>& given, const LoopOptions& options,
                                     const Progress& progress);
 
+enum class SnapTightening {
+  None,
+  // Replaced by shorter ones that run around the same handles, as long as there are; a loop that separates the surface stays as it is.
+  Shortest
+};
+
+// A closed polyline in space (a user's stroke, or a loop of another version of the surface) as a simple cycle along edges near it, which touches no
+// boundary; where the stroke crosses itself, the part that goes around a handle is kept, or the longer one. No value, and the reason, where the
+// stroke leaves the surface, or shrinks to less than three points on it. Throws Error{InvalidInput} if the stroke has fewer than two points or
+// one that is not finite.
+Found<std::vector<int>> snap_loop(const TriangleSurface& surface, const std::vector<Vec3>& stroke, SnapTightening tightening,
+                                  const Progress& progress);
+
 // The boundary loops, each as the points that its half-edges (those without an opposite) leave, in their order.
 std::vector<std::vector<int>> boundary_cycles(const TriangleSurface& surface);
 
