@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Based on: Erickson, Whittlesey, Greedy optimal homotopy and homology generators, 2005 (loops through one point, shortest first); each is then
+// tightened around several points, and of all of them disjoint ones are taken, shortest first.
+#include "topology/surface_loops.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "base/error.h"
+#include "topology/loop_graph.h"
+#include "topology/loop_kind.h"
+
+namespace hybrid_mesh {
+namespace {
+
+// A loop is looked for around so many of its points at a time.
+constexpr std::size_t bases_at_once = 4;
+
+struct Candidate {
+  std::vector<int> points;
+  double length = 0;
+};
+
+// The same for every point to start from and both directions.
+std::vector<int> canonical(std::vector<int> loop) {
+  std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+  if (loop.back() < loop[1]) std::reverse(loop.begin() + 1, loop.end());
+  return loop;
+}
+
+class LoopFinder {
+ public:
+  LoopFinder(const TriangleSurface& surface, const LoopOptions& options) : surface_(surface), options_(options), graph_(surface) {}
+
+  std::vector<std::vector<int>> find(const std::vector<std::vector<int>>& given, const Progress& progress);
+
+ private:
+  void take_given(const std::vector<std::vector<int>>& given);
+  void find_roots();
+  bool take_all(const Progress& progress);
+  bool take_some(const Progress& progress);
+  void polish(const Progress& progress);
+  std::vector<Candidate> candidates(const Progress& progress);
+  Candidate tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const;
+
+  const TriangleSurface& surface_;
+  const LoopOptions& options_;
+  LoopGraph graph_;
+  std::vector<std::vector<int>> roots_;  // per start: one point a component
+  std::vector<std::vector<int>> taken_;
+  std::size_t given_ = 0;
+  tbb::enumerable_thread_specific<LoopSearch> searches_{[this] { return LoopSearch(graph_); }};
+};
+
+std::vector<std::vector<int>> LoopFinder::find(const std::vector<std::vector<int>>& given, const Progress& progress) {
+  take_given(given);
+  given_ = given.size();
+  if (static_cast<int>(given_) == graph_.genus()) return taken_;
+  find_roots();
+  // Short loops may leave no room for others where triangles are large: then those of few points are taken, then others.
+  constexpr std::uint64_t attempts = 8;
+  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
+    graph_.measure(attempt == 0 ? EdgeMeasure::Length : attempt == 1 ? EdgeMeasure::Count : EdgeMeasure::Random, attempt);
+    if (take_all(progress)) {
+      if (attempt == 0) polish(progress);
+      return taken_;
+    }
+    graph_.forget_taken();
+    taken_.clear();
+    take_given(given);
+  }
+  throw NoMap("the triangles leave no room for " + std::to_string(graph_.genus()) + " loops that do not touch each other: subdivide the surface");
+}
+
+void LoopFinder::take_given(const std::vector<std::vector<int>>& given) {
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::vector<int>& loop = given[i];
+    const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::InvalidInput, "loop " + std::to_string(i) + " " + why); };
+    if (loop.size() < 3) refuse("has fewer than three points");
+    for (const int v : loop)
+      if (v < 0 || v >= graph_.point_count()) refuse("has the point " + std::to_string(v) + ", which does not exist");
+    std::vector<int> sorted = loop;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) refuse("passes through a point twice");
+    if (graph_.touches_wall(loop)) refuse("touches a boundary or a loop before it");
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      if (const int v = loop[k], next = loop[(k + 1) % loop.size()]; !graph_.arc(v, next))
+        refuse("has no edge between its points " + std::to_string(v) + " and " + std::to_string(next));
+    if (!graph_.take(loop)) refuse("separates the surface, alone or together with loops before it");
+    taken_.push_back(loop);
+  }
+  graph_.renew_keys();
+}
+
+// Points far from each other, each as far from the middle of its component or from those before it as can be.
+void LoopFinder::find_roots() {
+  const int components = graph_.component_count(), count = graph_.point_count();
+  std::vector<Vec3> middle(components, Vec3::Zero());
+  std::vector<double> weight(components, 0);
+  for (int v = 0; v < count; ++v) {
+    middle[graph_.component(v)] += graph_.at(v);
+    weight[graph_.component(v)] += 1;
+  }
+  for (int c = 0; c < components; ++c) middle[c] /= weight[c];
+  std::vector<double> nearest(count, std::numeric_limits<double>::infinity());
+  std::vector<Vec3> from = middle;
+  for (int start = 0; start < std::max(1, options_.starts); ++start) {
+    std::vector<int> farthest(components, -1);
+    for (int v = 0; v < count; ++v) {
+      const int c = graph_.component(v);
+      const double distance = (graph_.at(v) - from[c]).squaredNorm();
+      nearest[v] = start < 2 ? distance : std::min(nearest[v], distance);
+      if (!graph_.wall(v) && (farthest[c] < 0 || nearest[v] > nearest[farthest[c]])) farthest[c] = v;
+    }
+    std::vector<int> roots;
+    for (int c = 0; c < components; ++c)
+      if (farthest[c] >= 0) {
+        roots.push_back(farthest[c]);
+        from[c] = graph_.at(farthest[c]);
+      }
+    roots_.push_back(roots);
+  }
+}
+
+// False if the loops left have no room.
+bool LoopFinder::take_all(const Progress& progress) {
+  const int genus = graph_.genus();
+  const auto first = taken_.size();
+  while (static_cast<int>(taken_.size()) < genus) {
+    progress(static_cast<double>(taken_.size() - first) / (genus - static_cast<double>(first)));
+    if (!take_some(progress)) return std::isfinite(options_.longest);
+  }
+  return true;
+}
+
+// Those of one round that do not touch each other, shortest first.
+bool LoopFinder::take_some(const Progress& progress) {
+  bool any = false;
+  for (const Candidate& candidate : candidates(progress)) {
+    if (candidate.length > options_.longest || graph_.touches_wall(candidate.points) || !graph_.take(candidate.points)) continue;
+    taken_.push_back(candidate.points);
+    any = true;
+  }
+  graph_.renew_keys();
+  return any;
+}
+
+std::vector<Candidate> LoopFinder::candidates(const Progress& progress) {
+  std::vector<std::vector<std::vector<int>>> found(roots_.size());
+  tbb::parallel_for(std::size_t{0}, roots_.size(), [&](std::size_t s) { found[s] = searches_.local().basis(roots_[s], progress); });
+  std::vector<std::vector<int>> loops;
+  for (const auto& some : found) loops.insert(loops.end(), some.begin(), some.end());
+  std::vector<Candidate> all(loops.size());
+  tbb::parallel_for(std::size_t{0}, loops.size(), [&](std::size_t i) { all[i] = tightened(searches_.local(), loops[i], progress); });
+  std::sort(all.begin(), all.end(),
+            [](const Candidate& a, const Candidate& b) { return std::tie(a.length, a.points) < std::tie(b.length, b.points); });
+  all.erase(std::unique(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.points == b.points; }), all.end());
+  return all;
+}
+
+// The loop replaced by the shortest through one of its points, as long as that is shorter.
+Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const {
+  double length = search.length_of(loop);
+  // Twice in vain, around other points each time, and it is tight.
+  for (int round = 0, vain = 0; round < options_.tightenings && vain < 2; ++round) {
+    std::vector<int> best;
+    const std::size_t bases = std::min(bases_at_once, loop.size());
+    for (std::size_t k = 0; k < bases; ++k) {
+      const std::size_t at = (2 * k + vain) * loop.size() / (2 * bases);
+      // Sums in another order give other last digits: not shorter by more than that is as long.
+      std::vector<int> other = search.shortest(loop[at], length * (1 - 1e-9), progress);
+      if (other.empty()) continue;
+      length = search.length_of(other);
+      best = std::move(other);
+    }
+    vain = best.empty() ? vain + 1 : 0;
+    if (!best.empty()) loop = std::move(best);
+  }
+  return {canonical(std::move(loop)), length};
+}
+
+// Each loop found is looked for once more between the others, from its own points.
+void LoopFinder::polish(const Progress& progress) {
+  for (std::size_t i = given_; i < taken_.size() && taken_.size() <= 64; ++i) {
+    graph_.forget_taken();
+    for (std::size_t k = 0; k < taken_.size(); ++k)
+      if (k != i) graph_.take(taken_[k]);
+    graph_.renew_keys();
+    taken_[i] = tightened(searches_.local(), taken_[i], progress).points;
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> boundary_cycles(const TriangleSurface& surface) {
+  std::vector<std::vector<int>> loops;
+  std::vector<char> done(surface.opposite.size(), 0);
+  for (std::size_t start = 0; start < done.size(); ++start) {
+    if (surface.opposite[start] >= 0 || done[start]) continue;
+    loops.emplace_back();
+    for (int h = static_cast<int>(start); !done[h];) {
+      done[h] = 1;
+      loops.back().push_back(surface.from(h));
+      h = TriangleSurface::next(h);
+      while (surface.opposite[h] >= 0) h = TriangleSurface::next(surface.opposite[h]);
+    }
+  }
+  return loops;
+}
+
+double cycle_length(const TriangleSurface& surface, const std::vector<int>& loop) {
+  double length = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) length += (surface.points[loop[i]] - surface.points[loop[(i + 1) % loop.size()]]).norm();
+  return length;
+}
+
+std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<std::vector<int>>& given, const LoopOptions& options,
+                                    const Progress& progress) {
+  progress.stage("finding loops");
+  progress.check();
+  std::vector<SurfaceLoop> loops;
+  for (std::vector<int>& points : LoopFinder(surface, options).find(given, progress)) {
+    const double length = cycle_length(surface, points);
+    loops.push_back({std::move(points), length, LoopKind::Handle});
+  }
+  std::stable_sort(loops.begin() + static_cast<std::ptrdiff_t>(given.size()), loops.end(),
+                   [](const SurfaceLoop& a, const SurfaceLoop& b) { return a.length < b.length; });
+  tell_kinds(surface, loops, progress);
+  progress(1);
+  return loops;
+}
+
+}  // namespace hybrid_mesh
