@@ -12,7 +12,7 @@ from . import plans
 from .batch import Batch, BatchOptions, OutputError
 from .native import NativeMissing, explain
 from .process import Processes, WorkerFailed, bpy_available
-from .settings import FACES, RemeshSettings, SettingsError
+from .settings import COMPONENTS, FACES, TOPOLOGIES, RemeshSettings, SettingsError
 from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
@@ -82,6 +82,9 @@ def _settings(arguments):
         refinement="adaptive" if arguments.adaptive else "uniform",
         faces=arguments.faces,
         base=arguments.base_quads,
+        topology=arguments.topology,
+        components=arguments.components,
+        remove_noise=arguments.remove_noise,
         stretch_threshold=arguments.stretch,
         semi_regular=arguments.semi_regular,
         drop_components=arguments.drop_components,
@@ -179,12 +182,20 @@ def _parser():
     shape.add_argument("--adaptive", action="store_true", help="smaller quads where the shape needs them; else one size everywhere")
     shape.add_argument("--faces", choices=FACES, default="quads", help="adaptive: pure quads (default), n-gons or triangles where sizes meet")
     shape.add_argument("--base-quads", type=_base, default="auto", metavar="auto|min|N", help="quads of the base domain (default auto: fits the budget)")
+    shape.add_argument(
+        "--topology", choices=TOPOLOGIES, default="auto",
+        help="handles, tunnels and boundaries open on finer levels (late) or in the base; default auto: late with a minimal base",
+    )  # fmt: skip
+    shape.add_argument("--components", choices=COMPONENTS, default="apart", help="joined: one base for all, late topology parts them (default apart)")
     shape.add_argument("--stretch", type=float, default=4.0, metavar="X", help="grow skin where the map is stretched more than this (default 4)")
     shape.add_argument("--plan", metavar="FILE.json", help="take base quads and irregular operations from a plan, as NAME.plan.json of another remesh")
     shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
     shape.add_argument("--seed", type=_whole(0), default=1, metavar="N", help="of what is arbitrary (default 1)")
     surface = command.add_argument_group("input surface")
     surface.add_argument("--drop-components", type=float, default=0.0, metavar="AREA", help="remove components below this fraction of the area")
+    surface.add_argument(
+        "--remove-noise", type=float, default=0.0, metavar="LENGTH", help="close handles with a loop shorter than this fraction of the diagonal for good"
+    )
     surface.add_argument("--strict", action="store_true", help="refuse input that needs repair")
     written = command.add_argument_group("output")
     written.add_argument("--export", type=_exports, default=(), metavar="ply,obj", help="write the final mesh in these formats")

@@ -10,6 +10,8 @@ from .limits import limits
 REFINEMENTS = ("uniform", "adaptive")
 FACES = ("quads", "transition", "triangles")
 BASES = ("auto", "min")
+TOPOLOGIES = ("auto", "late", "base")
+COMPONENTS = ("apart", "joined")
 
 # How an option is called where the user typed it; the command line's name is the one people look up.
 OPTION_NAMES = {
@@ -19,6 +21,9 @@ OPTION_NAMES = {
     "refinement": "--adaptive",
     "faces": "--faces",
     "base": "--base-quads",
+    "topology": "--topology",
+    "components": "--components",
+    "remove_noise": "--remove-noise",
     "stretch_threshold": "--stretch",
     "semi_regular": "--semi-regular",
     "drop_components": "--drop-components",
@@ -41,6 +46,9 @@ class RemeshSettings:
     refinement: str = "uniform"
     faces: str = "quads"  # what becomes of leaves with hanging nodes (adaptive)
     base: object = "auto"  # "auto", "min" or a number of base quads
+    topology: str = "auto"  # "late": handles, boundaries and tubes open on finer levels; "base": in the base; "auto": late with a minimal base
+    components: str = "apart"  # "joined": one base for all components, which part on finer levels (with late topology)
+    remove_noise: float = 0.0  # handles and tunnels with shorter loops, as a fraction of the bounding-box diagonal, are closed for good
     stretch_threshold: float = 4.0  # above it irregular operations grow skin
     semi_regular: bool = False  # no irregular operations
     drop_components: float = 0.0  # components below this fraction of the area are removed
@@ -62,6 +70,9 @@ class RemeshSettings:
                 raise SettingsError(f"--base-quads must be auto, min or a whole number from 1 to {bounds.most_base_quads}, not {self.base!r}")
         else:
             _whole("base", self.base, 1, bounds.most_base_quads, "auto, min or")
+        _choice("topology", self.topology, TOPOLOGIES)
+        _choice("components", self.components, COMPONENTS)
+        _fraction("remove_noise", self.remove_noise, bounds.end_of_remove_noise, "the bounding-box diagonal")
         least, most = bounds.least_stretch_threshold, bounds.most_stretch_threshold
         _number("stretch_threshold", self.stretch_threshold, lambda value: least <= value <= most, f"from {least:.7g} to {most:.7g}")
         _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")

@@ -13,6 +13,7 @@ inline constexpr std::int64_t most_vertices = (std::int64_t{1} << 31) - 1;
 // L2 distances and areas of components are fractions of the whole, which they are to stay below.
 inline constexpr double end_of_error = 1;
 inline constexpr double end_of_drop_components = 1;
+inline constexpr double end_of_remove_noise = 1;
 
 // Above the base: a quad has 4^12 descendants there, as many as fill the memory.
 inline constexpr int most_levels = 12;

@@ -13,6 +13,7 @@ py::dict all_limits() {
   all["most_vertices"] = limits::most_vertices;
   all["end_of_error"] = limits::end_of_error;
   all["end_of_drop_components"] = limits::end_of_drop_components;
+  all["end_of_remove_noise"] = limits::end_of_remove_noise;
   all["most_levels"] = limits::most_levels;
   all["most_base_quads"] = limits::most_base_quads;
   all["least_stretch_threshold"] = limits::least_stretch_threshold;

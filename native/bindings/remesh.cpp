@@ -110,6 +110,24 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
       options.base = BaseSize::Given;
       options.base_quads = static_cast<int>(setting.whole_number(1, limits::most_base_quads));
     }
+  } else if (key == "topology") {
+    if (setting.is("auto"))
+      options.topology = TopologyMode::Auto;
+    else if (setting.is("late"))
+      options.topology = TopologyMode::Late;
+    else if (setting.is("base"))
+      options.topology = TopologyMode::Base;
+    else
+      setting.refuse("'auto', 'late' or 'base'");
+  } else if (key == "components") {
+    if (setting.is("apart"))
+      options.components = Components::Apart;
+    else if (setting.is("joined"))
+      options.components = Components::Joined;
+    else
+      setting.refuse("'apart' or 'joined'");
+  } else if (key == "remove_noise") {
+    options.remove_noise = setting.number_below(limits::end_of_remove_noise);
   } else if (key == "stretch_threshold") {
     options.stretch_threshold = setting.number(limits::least_stretch_threshold, limits::most_stretch_threshold);
   } else if (key == "semi_regular") {

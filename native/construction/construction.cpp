@@ -22,8 +22,8 @@ HybridMesh hierarchy_of(const QuadGraph& base) {
 
 }  // namespace
 
-Construction::Construction(const QuadGraph& base, double area)
-    : mesh_(hierarchy_of(base)), quads_(base), maps_(base.patch_count()), area_(area), nodes_(base.patch_count()) {
+Construction::Construction(const QuadGraph& base, double area, SurfaceVersion surface)
+    : mesh_(hierarchy_of(base)), quads_(base), maps_(base.patch_count()), area_(area), surface_(std::move(surface)), nodes_(base.patch_count()) {
   std::iota(nodes_.begin(), nodes_.end(), 0);
   for (int q = 0; q < base.patch_count(); ++q) root_number_.push_back({q, q});
   edits_.emplace_back();
@@ -137,6 +137,7 @@ void Construction::apply(std::vector<LayoutScript::Edit> round) {
 void Construction::apply(MappedEdit mapped, int round) {
   apply({{std::move(mapped.edit), round, false, 0, {}, {}, {}}});
   for (auto& [patch, map] : mapped.maps) set_map(patch, std::move(map));
+  for (const int e : mapped.opens) surface_.open[e] = true;
 }
 
 LayoutChange Construction::change(const LayoutEdit& edit) {

@@ -16,8 +16,8 @@ namespace hybrid_mesh {
 // addresses, reports and plans are read off it.
 class Construction {
  public:
-  // `area`: of the surface that the quads are mapped to, which is of unit size.
-  Construction(const QuadGraph& base, double area);
+  // `area`: of the surface that the quads are mapped to, which is of unit size; `surface`: its version.
+  Construction(const QuadGraph& base, double area, SurfaceVersion surface = {});
   // A hierarchy with its maps and the state of one of its levels, which is refined to that level everywhere; `root_numbers`: of its root quads in
   // addresses, by node. Throws Error{InvalidInput} if a finer level has operations or there is a quad without a map.
   Construction(HybridMesh hierarchy, const std::vector<int>& root_numbers, int level);
@@ -25,7 +25,8 @@ class Construction {
   int level() const { return level_; }
   const AddressedGraph& quads() const { return quads_; }  // of the level, after its edits so far
   int node(int patch) const { return nodes_[patch]; }     // of the hierarchy; before the level's first edit, and once closed
-  LevelState state() const { return {quads_.graph(), maps_, area_, placement_}; }
+  LevelState state() const { return {quads_.graph(), maps_, area_, placement_, surface_}; }
+  const SurfaceVersion& surface() const { return surface_; }
 
   // Edits of disjoint regions, all named by the quads before any of them; their quads' maps are left to set_map(). Throws Error{Internal} where there
   // are no such quads.
@@ -66,6 +67,7 @@ class Construction {
   std::vector<QuadMap> maps_;  // per patch; without a map until one is set
   double area_ = 0;            // see LevelState
   Placement placement_;
+  SurfaceVersion surface_;
   std::vector<std::vector<LayoutScript::Edit>> edits_;
   std::vector<std::pair<int, int>> root_number_;  // node, number
   bool closed_ = false;

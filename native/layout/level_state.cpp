@@ -6,7 +6,7 @@
 namespace hybrid_mesh {
 
 LevelState quadrisected(const LevelState& state) {
-  LevelState finer{quadrisected(state.quads), {}, state.area, state.placement};
+  LevelState finer{quadrisected(state.quads), {}, state.area, state.placement, state.surface};
   for (const QuadMap& m : state.maps)
     for (int k = 0; k < 4; ++k) finer.maps.push_back({m.map, m.square.quadrant(k)});
   return finer;
@@ -52,6 +52,7 @@ LayoutChange apply(LevelState& state, const MappedEdit& mapped) {
     if (change.patch[q] >= 0) maps[change.patch[q]] = std::move(state.maps[q]);
   for (const auto& [q, map] : mapped.maps) maps[q] = {std::make_shared<const PatchMap>(map), {}};
   state.maps = std::move(maps);
+  for (const int e : mapped.opens) state.surface.open[e] = true;
   return change;
 }
 

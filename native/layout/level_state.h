@@ -8,6 +8,7 @@
 #include "layout/layout_edit.h"
 #include "parameterization/map_clipping.h"
 #include "surface/placement.h"
+#include "topology/surface_series.h"
 
 namespace hybrid_mesh {
 
@@ -17,12 +18,20 @@ struct QuadMap {
   DyadicSquare square;
 };
 
+// The version of the surface that a level lies on, K^j.
+struct SurfaceVersion {
+  std::shared_ptr<const SurfaceSeries>
+      series;              // in the maps' space, whose sources are its faces (see OpenedSurface::faces). None: it is one surface on all levels
+  std::vector<bool> open;  // per event of it
+};
+
 // The state of one level that operations act on: its quads, and where each lies on the surface. Copies share the maps.
 struct LevelState {
   QuadGraph quads;
   std::vector<QuadMap> maps;  // per quad
   double area = 0;            // of the surface where the maps have it
   Placement placement;        // that brings the maps to unit size: operations are as good wherever the surface stands and however large it is
+  SurfaceVersion surface;
 };
 
 // The next level, before any operation.
@@ -37,6 +46,7 @@ QuadGraph part_of(const QuadGraph& graph, const std::vector<int>& part);
 // An irregular operation that has been laid out and mapped, and waits to be applied.
 struct MappedEdit {
   LayoutEdit edit;
+  std::vector<int> opens;                      // events of the surface's series that open with it
   std::vector<std::pair<int, PatchMap>> maps;  // of the new quads, and of those around that were smoothed with them: by their numbers after the edit
   double energy_before = 0, energy_after = 0;  // of the maps of the region and of what was smoothed around it, beyond an isometry's, in quads
 };

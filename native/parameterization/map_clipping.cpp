@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -12,6 +14,7 @@
 namespace hybrid_mesh {
 namespace {
 
+constexpr double kTie = 1e-9;    // of an area: what rounding must not decide
 constexpr double kSnap = 1e-13;  // of the map's unit square: what rounding moves a crossing by, and some
 
 // A map's triangles while they are cut along lines u = c and v = c. Which side of a line a vertex is on is exact, since c is a number that a double
@@ -75,7 +78,7 @@ class MapCutting {
       out.push_back(made_of(t, corner(t, alone), x, y));
       // The quadrilateral x, next, last, y along the diagonal that leaves the better triangles.
       const Corner n = corner(t, next), l = corner(t, last);
-      if (std::min(area(x, n, l), area(x, l, y)) >= std::min(area(x, n, y), area(n, l, y))) {
+      if (std::min(area(x, n, l), area(x, l, y)) >= (1 - kTie) * std::min(area(x, n, y), area(n, l, y))) {
         out.push_back(made_of(t, x, n, l));
         out.push_back(made_of(t, x, l, y));
       } else {
@@ -166,6 +169,13 @@ class MapCutting {
   std::vector<Vec3> positions_;
 };
 
+// The width of the largest dyadic squares that end at c.
+double coarsest_width(double c) {
+  double width = 0.5;
+  while (std::floor(c / width) * width != c) width /= 2;
+  return width;
+}
+
 }  // namespace
 
 std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSquare>& squares) {
@@ -173,14 +183,21 @@ std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSqua
   if (squares.empty()) return {};
   MapCutting cutting(map);
   cutting.take(squares);
-  std::array<std::set<double>, 2> lines;
-  for (const DyadicSquare& s : squares) {
-    lines[0].insert({s.u, s.u + s.width});
-    lines[1].insert({s.v, s.v + s.width});
-  }
-  for (int axis = 0; axis < 2; ++axis)
-    for (const double c : lines[axis])
-      if (c > 0 && c < 1) cutting.cut(axis, c, lines[1 - axis]);
+  // Coarse lines first, those of the squares' ancestors too: then the points along a line are the same whichever finer squares are asked for, and
+  // maps that were clipped at different times still share them. A line that was cut before leaves diagonals, which later ones cross.
+  std::map<double, std::array<std::set<double>, 2>, std::greater<>> by_width;
+  std::array<std::set<double>, 2> all;
+  for (const DyadicSquare& s : squares)
+    for (double width = s.width; width < 1; width *= 2) {
+      const std::array<double, 2> low{std::floor(s.u / width) * width, std::floor(s.v / width) * width};
+      for (int axis = 0; axis < 2; ++axis)
+        for (const double c : {low[axis], low[axis] + width})
+          if (c > 0 && c < 1 && all[axis].insert(c).second) by_width[coarsest_width(c)][axis].insert(c);
+    }
+  for (int axis = 0; axis < 2; ++axis) all[axis].insert({0.0, 1.0});
+  for (const auto& [width, lines] : by_width)
+    for (int axis = 0; axis < 2; ++axis)
+      for (const double c : lines[axis]) cutting.cut(axis, c, all[1 - axis]);
   std::vector<PatchMap> parts;
   for (const DyadicSquare& s : squares) parts.push_back(cutting.part(s));
   return parts;

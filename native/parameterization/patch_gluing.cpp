@@ -141,6 +141,7 @@ GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& gr
   PatchedSurface& surface = out.mapped.surface;
   for (std::size_t v = 0; v < surface.mesh.points.size(); ++v) surface.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
   for (std::size_t f = 0; f < surface.mesh.faces.size(); ++f) surface.mesh.source_face.push_back(static_cast<int>(f));
+  out.faces = surface.mesh.faces;
   for (const PatchMap& map : maps) {
     out.source_face.insert(out.source_face.end(), map.source_face.begin(), map.source_face.end());
     out.source.insert(out.source.end(), map.source.begin(), map.source.end());

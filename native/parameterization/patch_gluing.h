@@ -22,11 +22,12 @@ MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph
 // The same without the faces that the maps name: the surface is its own source, point by point and face by face.
 struct GluedMaps {
   MappedSurface mapped;
-  // Per face where it lies on the surface that the maps name: as PatchMap has it.
+  std::vector<std::array<int, 3>> faces;  // that `mapped` names as its source: its own, and maybe further ones
+  // Per such face where it lies on the surface that the maps name: as PatchMap has it.
   std::vector<int> source_face;
   std::vector<std::array<float, 9>> source;
 
-  // Makes a map's sources, given in faces of `mapped`, name faces of the surface that the glued maps named.
+  // Makes a map's sources, given in `faces`, name faces of the surface that the glued maps named.
   void trace(PatchMap& map) const;
 };
 GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph);

@@ -13,6 +13,7 @@ struct Budget {
   int levels = 0;
   double base_size = 0;  // see BaseDomainOptions
   double boundary_side = 0;
+  double shrink = 1;  // of the quads that a minimal base gets on its level with operations: what opens above it adds to them
 };
 
 // What a candidate is planned for.

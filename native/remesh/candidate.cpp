@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "construction/construction.h"
+#include "hierarchy/coarsening.h"
 #include "layout/search/base_map.h"
 #include "parameterization/patch_extraction.h"
+#include "remesh/late_topology.h"
 #include "remesh/layout_search_options.h"
 #include "remesh/outlines.h"
 #include "remesh/quality.h"
@@ -19,6 +21,7 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kRequests = 8;
+constexpr int kMostMisses = 3;  // requests with which a few quads too many are made up for, before a coarser mesh is kept
 // A base of more quads than this has room for a ring around a feature that sticks out, so that it is sought of so many quads fewer.
 constexpr double kRoomyBase = 280;
 // The last triangles of a decimation are too few to choose quads from: below this size the base's is taken for the least.
@@ -36,14 +39,14 @@ void set_maps(Construction& made, LevelMap& level, const RemeshTask& task, const
   for (int q = 0; q < level.layout.patch_count(); ++q) {
     const char* defect = find_map_defect(maps[q]);
     if (*defect) throw NoMap("the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
-    working.to_repaired(maps[q], task.source.repaired);
+    working.to_repaired(maps[q], task.base.mesh);
     made.set_map(q, std::move(maps[q]));
   }
 }
 
 // The construction of a base and the levels that were edited, at the last of these.
 Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
-  Construction made(map.levels.front().layout.graph(), area_of(working.mesh));
+  Construction made(map.levels.front().layout.graph(), area_of(working.mesh), task.base.version());
   const auto parts = static_cast<double>(map.levels.size());
   for (std::size_t i = 0; i < map.levels.size(); ++i) {
     while (made.level() < map.levels[i].level) {
@@ -64,7 +67,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   base_options.size = budget.base_size;
   base_options.boundary_side = budget.boundary_side;
   if (options.base == BaseSize::Minimal) {
-    base_options.size = least_quads(task.source.topology) * request.size_factor;
+    base_options.size = least_quads(task.base.topology) * request.size_factor;
     if (base_options.size < kSmallBase) base_options.least = static_cast<int>(base_options.size);
   }
   base_options.seed = request.seed;
@@ -72,15 +75,66 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   const BaseDomain base = make_base(task, origin, in_use);
   const WorkingSurface& working = in_use.of_size(task, origin.faces);
   Found<BaseMap> map =
-      map_to_base(working.mesh, base, layout_search_options(options, budget, task.source.topology, base, request), task.progress.part(0.15, 0.5));
+      map_to_base(working.mesh, base, layout_search_options(options, budget, task.base.topology, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
   origin.level = map->script.levels.front();
-  return assemble_candidate(task, working, std::move(*map), origin, [&](Construction& made) { return grow_skin(made, task, budget, base); });
+  LateTopology late;
+  Candidate c = assemble_candidate(task, working, std::move(*map), origin, [&](Construction& made) {
+    late = open_late(made, task, budget);
+    std::vector<Plan::Region> regions = grow_skin(made, task, budget, base);
+    regions.insert(regions.begin(), late.regions.begin(), late.regions.end());
+    return regions;
+  });
+  c.unopened = std::move(late.unopened);
+  return c;
+}
+
+// Back to the coarsest hierarchy with its operations: an adaptive mesh is refined where that brings it nearer to the surface, and nowhere else.
+void coarsen(Candidate& c) {
+  Coarsened made = coarsened(c.hierarchy);
+  std::vector<int> plan_root(made.mesh.node_count(), -1);
+  for (std::size_t n = 0; n < made.node.size(); ++n)
+    if (made.node[n] >= 0) plan_root[made.node[n]] = c.plan_root[n];
+  c.plan_root = std::move(plan_root);
+  std::vector<VertexId> irregular;
+  for (const auto& [before, after] : made.vertex)
+    if (std::binary_search(c.finest_irregular.begin(), c.finest_irregular.end(), before)) irregular.push_back(after);
+  std::sort(irregular.begin(), irregular.end());
+  c.finest_irregular = std::move(irregular);
+  c.hierarchy = std::move(made.mesh);
+  c.hierarchy.balance();
 }
 
 // The vertices of the coarsest uniform mesh that the candidate's hierarchy has, or of one with so many levels.
 std::int64_t vertices_needed(const Candidate& c, const Source& source, int levels) {
   return uniform_vertices(c.finest_quads, source.topology.euler, c.finest_boundary_sides, std::max(c.finest, levels) - c.finest);
+}
+
+// Would a uniform mesh one level finer use the vertices allowed, but for a few quads that have opened above the base? Then the budget shrinks by
+// these.
+bool just_misses(const RemeshTask& task, Budget& budget, const Candidate& c) {
+  constexpr double enough = 0.98, few = 1.2;  // of the vertices allowed
+  const RemeshOptions& options = task.options;
+  if (!task.base.series || !c.unopened.empty() || options.base != BaseSize::Minimal || options.refinement != Refinement::Uniform ||
+      options.levels >= 0 || options.error > 0)
+    return false;
+  const std::int64_t euler = task.source.topology.euler;
+  const int levels = levels_within(budget.vertices, c.finest, c.finest_quads, euler, c.finest_boundary_sides);
+  const auto vertices = [&](int more) {
+    return static_cast<double>(uniform_vertices(c.finest_quads, euler, c.finest_boundary_sides, levels + more - c.finest));
+  };
+  const auto allowed = static_cast<double>(budget.vertices);
+  if (vertices(0) > allowed || vertices(0) >= enough * allowed || vertices(1) > few * allowed) return false;
+  budget.shrink *= 0.997 * allowed / vertices(1);
+  return true;
+}
+
+void set_levels(const RemeshTask& task, const Budget& budget, Candidate& c) {
+  const RemeshOptions& options = task.options;
+  c.levels = budget.levels;
+  // With a base of any size the number of levels is what makes a mesh of the size asked for.
+  if (options.base == BaseSize::Minimal && options.refinement == Refinement::Uniform && options.levels < 0 && options.error == 0)
+    c.levels = levels_within(budget.vertices, c.finest, c.finest_quads, task.source.topology.euler, c.finest_boundary_sides);
 }
 
 }  // namespace
@@ -115,7 +169,7 @@ const WorkingSurface& WorkingSurfaceInUse::of_size(const RemeshTask& task, std::
   if (faces != faces_) {
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
-    surface_ = make_working_surface(task.source.repaired, task.source.placement, faces, task.progress.part(0.05, 0.05));
+    surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), task.base.held());
     faces_ = faces;
   }
   return surface_;
@@ -136,22 +190,33 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   std::string failure;
   std::int64_t least = -1;
   WorkingSurfaceInUse working;
+  Found<Candidate> missing;  // leaves a level of the budget unused, for a few quads
+  int misses = 0;
   for (const BaseRequest& request : requests) {
     Found<Candidate> c = found([&] { return make_candidate(task, budget, request, working); });
+    if (c && just_misses(task, budget, *c)) {
+      if (!missing) missing = std::move(c);
+      c = found([&] { return make_candidate(task, budget, request, working); });
+      if (!c || just_misses(task, budget, *c)) {
+        if (++misses == kMostMisses) break;
+        continue;
+      }
+    }
     if (!c) {
       failure = c.reason;
       continue;
     }
-    c->levels = budget.levels;
-    // With a base of any size the number of levels is what makes a mesh of the size asked for.
-    if (options.base == BaseSize::Minimal && options.refinement == Refinement::Uniform && options.levels < 0 && options.error == 0)
-      c->levels = levels_within(budget.vertices, c->finest, c->finest_quads, task.source.topology.euler, c->finest_boundary_sides);
+    set_levels(task, budget, *c);
     const std::int64_t needed = vertices_needed(*c, task.source, c->levels);
     const bool bound = options.vertices > 0 && options.refinement == Refinement::Uniform;
     if (!bound || needed <= options.vertices) return {std::move(c)};
     least = least < 0 ? needed : std::min(least, needed);
     if (c->levels == 0 || options.levels >= 0) break;
     budget = with_levels(budget, c->levels - 1, options, task.source);
+  }
+  if (missing) {
+    set_levels(task, budget, *missing);
+    return {std::move(missing)};
   }
   if (least >= 0)
     failure = "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(options.vertices) + " allowed";
@@ -189,11 +254,17 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
     for (std::size_t k = 0; k < of.edits.size(); ++k) of.edits[k] = made.edits()[level][k];  // with their addresses
   }
   plan.regions = regions;
+  plan.topology = planned_events(task.base, task.source.repaired);
+  for (const Plan::Region& region : regions)
+    for (const int e : region.opens) plan.topology[e].level = region.level;
+  c.opened_on.assign(plan.topology.size(), -1);
+  for (std::size_t e = 0; e < plan.topology.size(); ++e) c.opened_on[e] = plan.topology[e].level;
   const auto from_unit = [&](const Vec3& p) { return placement.from_unit(p); };
   move_outline(plan.base, from_unit);
   move_outlines(plan.levels, from_unit);
   c.plan = to_json(plan);
   c.hierarchy = std::move(hierarchy);
+  if (task.options.refinement == Refinement::Adaptive) coarsen(c);
   task.watch.stop();
   return c;
 }

@@ -29,7 +29,9 @@ struct Candidate {
   // The last level with operations (0: none), all of whose quads have a map of their own.
   int finest = 0;
   std::int64_t finest_quads = 0, finest_boundary_sides = 0;
-  std::vector<VertexId> finest_irregular;  // sorted
+  std::vector<VertexId> finest_irregular;             // sorted
+  std::vector<int> opened_on;                         // per event of the topology: the level
+  std::vector<std::pair<int, std::string>> unopened;  // events of the topology that found no room above the base, and why
 
   QuadMesh final_mesh;                                // fitted
   std::vector<QuadMesh> level_meshes;                 // of every level, fitted; the last is the final mesh

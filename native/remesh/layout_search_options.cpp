@@ -50,7 +50,7 @@ void search_finer_levels(LayoutSearchOptions& search, const RemeshOptions& optio
   if (quads < kLeastQuads) return;
   LevelSearchOptions& last = search.levels.back();
   // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
-  const double size = quads_for_budget(budget, topology, quads, sides);
+  const double size = budget.shrink * quads_for_budget(budget, topology, quads, sides);
   last.even_quads = size - kRoomForARing;
   last.vertices = std::max(1500.0, last.vertices * std::min(1.0, size / quads));
   last.uneven = excess_of_stretch(std::pow(options.stretch_threshold, 0.45));

@@ -12,6 +12,7 @@
 #include "layout/operations/region_repatch.h"
 #include "layout/search/layout_script.h"
 #include "remesh/working_surface.h"
+#include "topology/surface_series.h"
 
 namespace hybrid_mesh {
 
@@ -37,8 +38,18 @@ struct Plan {
     RegionPattern pattern;           // its strokes in the input's space
     // The addresses of quads, and their sides that begin at the first corners of the region's first rims; see make_region(). Empty: any.
     std::vector<std::pair<std::string, int>> starts;
+    std::vector<int> opens;  // events of the plan's topology that open there
     int buffer_rings = 1;
   };
+  // Something of the topology that is closed on the base, and opens on a finer level; see TopologyEvent.
+  struct Event {
+    EventKind kind = EventKind::Cut;
+    std::vector<std::vector<Vec3>> loops;  // two of a tube, else one: in the input's space
+    int level = -1;                        // on which it opens; -1: the first that has room
+  };
+  std::vector<Event> topology;
+  // Nothing but the topology is given: the base is searched.
+  bool has_base() const { return tower || !base.quads.empty(); }
   LayoutOutline base;                  // in the input's space
   std::optional<BoundaryTower> tower;  // instead of the base, and then there are no levels: in the input's space
   std::optional<Origin> origin;

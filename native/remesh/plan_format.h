@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "layout/operations/region_repatch.h"
+#include "topology/surface_series.h"
 
 namespace hybrid_mesh {
 
@@ -28,6 +29,8 @@ inline constexpr std::array<std::pair<RegionPattern::Kind, const char*>, 5> kReg
                                                                                             {RegionPattern::Kind::Rows, "rows"},
                                                                                             {RegionPattern::Kind::Even, "even"},
                                                                                             {RegionPattern::Kind::Template, "template"}}};
+inline constexpr std::array<std::pair<EventKind, const char*>, 3> kEventKinds{
+    {{EventKind::Cut, "cut"}, {EventKind::Tube, "tube"}, {EventKind::Boundary, "boundary"}}};
 }  // namespace plan_format
 
 // A value of the plan and its place in it, for messages.

@@ -266,7 +266,7 @@ std::vector<DrawnStroke> strokes_from_json(const PlanEntry& entry) {
 
 Plan::Region region_from_json(const PlanEntry& entry) {
   Plan::Region r;
-  std::set<std::string> keys{"level", "quads", "buffer_rings"};
+  std::set<std::string> keys{"level", "quads", "opens", "buffer_rings"};
   if (entry.has("layout")) {
     if (entry.has("curves")) entry.refuse("has \"curves\" and a \"layout\": it is laid out in one way");
     const std::string word = entry.at("layout").text();
@@ -300,8 +300,27 @@ Plan::Region region_from_json(const PlanEntry& entry) {
     const std::vector<PlanEntry> quads = entry.at("new_quads").list();
     for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
   }
+  if (entry.has("opens"))
+    for (const PlanEntry& e : entry.at("opens").list()) r.opens.push_back(static_cast<int>(e.integer(0, std::numeric_limits<int>::max())));
   if (entry.has("buffer_rings")) r.buffer_rings = static_cast<int>(entry.at("buffer_rings").integer(0, limits::most_buffer_rings));
   return r;
+}
+
+// --- topology ------------------------------------------------------------------------------------------------------------------------
+Plan::Event event_from_json(const PlanEntry& entry) {
+  entry.only({"kind", "loops", "level"});
+  Plan::Event event;
+  const std::string word = entry.at("kind").text();
+  const auto named = std::find_if(kEventKinds.begin(), kEventKinds.end(), [&](const auto& kind) { return word == kind.second; });
+  if (named == kEventKinds.end()) entry.at("kind").refuse("must be \"cut\", \"tube\" or \"boundary\"");
+  event.kind = named->first;
+  for (const PlanEntry& loop : entry.at("loops").list(event.kind == EventKind::Tube ? 2 : 1)) {
+    std::vector<Vec3>& points = event.loops.emplace_back();
+    for (const PlanEntry& p : loop.list()) points.push_back(p.point());
+    if (points.size() < 3) loop.refuse("must have three points at least");
+  }
+  if (entry.has("level")) event.level = static_cast<int>(entry.at("level").integer(1, limits::most_levels));
+  return event;
 }
 
 }  // namespace
@@ -310,13 +329,19 @@ Plan plan_from_json(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "the plan is not JSON");
   const PlanEntry top(json, PlanEntry::kTop);
-  top.only({"format", "version", "base", "levels", "operations"});
+  top.only({"format", "version", "topology", "base", "levels", "operations"});
   if (top.at("format").text() != kFormat) top.at("format").refuse(std::string("must be \"") + kFormat + "\"");
   if (const std::int64_t version = top.at("version").integer(1, 1000000); version > kVersion)
     throw Error(ErrorCode::Unsupported,
                 "the plan has version " + std::to_string(version) + "; this program reads versions up to " + std::to_string(kVersion));
-  const PlanEntry base = top.at("base");
   Plan plan;
+  if (top.has("topology"))
+    for (const PlanEntry& e : top.at("topology").list()) plan.topology.push_back(event_from_json(e));
+  if (!top.has("base") && top.has("topology")) {
+    top.only({"format", "version", "topology"});
+    return plan;
+  }
+  const PlanEntry base = top.at("base");
   if (base.has("boundary_nodes")) {
     base.only({"boundary_nodes", "cubes"});
     plan.tower = tower_from_json(base);
@@ -328,7 +353,11 @@ Plan plan_from_json(const std::string& text) {
   }
   if (top.has("levels") && !plan.tower) plan.levels = levels_from_json(top.at("levels"), plan.base);
   if (top.has("operations"))
-    for (const PlanEntry& e : top.at("operations").list()) plan.regions.push_back(region_from_json(e));
+    for (const PlanEntry& e : top.at("operations").list()) {
+      plan.regions.push_back(region_from_json(e));
+      for (const int opens : plan.regions.back().opens)
+        if (opens >= static_cast<int>(plan.topology.size())) e.at("opens").refuse("names an event that the plan's \"topology\" does not have");
+    }
   return plan;
 }
 

@@ -2,7 +2,6 @@
 #include "remesh/plan_regions.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -12,9 +11,6 @@
 
 namespace hybrid_mesh {
 namespace {
-
-// The edits of regions belong to no round of a search: they come after all of these.
-constexpr int kAfterRounds = std::numeric_limits<int>::max();
 
 // Does the regions one after another.
 class RegionRepatcher {
@@ -78,8 +74,20 @@ RegionRepatch resolved(const Plan::Region& region, const AddressedGraph& level) 
   }
   for (const auto& [quad, side] : region.starts) repatch.starts.push_back({find(quad), side});
   repatch.pattern = region.pattern;
+  repatch.opens = region.opens;
   repatch.buffer_rings = region.buffer_rings;
   return repatch;
+}
+
+Plan::Region region_of(const RegionRepatch& repatch, const Construction& made) {
+  Plan::Region region;
+  region.level = made.level();
+  for (const int q : repatch.patches) region.quads.push_back(to_string(made.quads().address(q)));
+  region.pattern = repatch.pattern;
+  for (const PatchSide& start : repatch.starts) region.starts.push_back({to_string(made.quads().address(start.patch)), start.side});
+  region.opens = repatch.opens;
+  region.buffer_rings = repatch.buffer_rings;
+  return region;
 }
 
 void repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement, const Progress& progress) {

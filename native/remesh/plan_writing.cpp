@@ -142,8 +142,26 @@ Json regions_to_json(const Plan& plan) {
     if (r.pattern.even_quads > 0) region["even_quads"] = r.pattern.even_quads;
     put_starts(region, r.starts);
     if (r.pattern.kind == RegionPattern::Kind::Template) region["new_quads"] = r.pattern.quads;
+    if (!r.opens.empty()) region["opens"] = r.opens;
     region["buffer_rings"] = r.buffer_rings;
     out.push_back(std::move(region));
+  }
+  return out;
+}
+
+Json topology_to_json(const Plan& plan) {
+  Json out = Json::array();
+  for (const Plan::Event& e : plan.topology) {
+    Json event;
+    for (const auto& [kind, name] : kEventKinds)
+      if (e.kind == kind) event["kind"] = name;
+    for (const std::vector<Vec3>& loop : e.loops) {
+      Json points = Json::array();
+      for (const Vec3& p : loop) points.push_back(to_json(p));
+      event["loops"].push_back(std::move(points));
+    }
+    if (e.level >= 0) event["level"] = e.level;
+    out.push_back(std::move(event));
   }
   return out;
 }
@@ -151,9 +169,13 @@ Json regions_to_json(const Plan& plan) {
 }  // namespace
 
 std::string to_json(const Plan& plan) {
+  Json out{{"format", kFormat}, {"version", kVersion}};
+  if (!plan.topology.empty()) out["topology"] = topology_to_json(plan);
+  if (!plan.has_base()) return out.dump();
   Json base = base_to_json(plan);
   if (plan.origin) base["origin"] = origin_to_json(*plan.origin);
-  Json out{{"format", kFormat}, {"version", kVersion}, {"base", std::move(base)}, {"levels", levels_to_json(plan)}};
+  out["base"] = std::move(base);
+  out["levels"] = levels_to_json(plan);
   if (!plan.regions.empty()) out["operations"] = regions_to_json(plan);
   return out.dump();
 }

@@ -5,6 +5,7 @@
 
 #include "layout/search/base_map.h"
 #include "remesh/candidate.h"
+#include "remesh/late_topology.h"
 #include "remesh/outlines.h"
 #include "remesh/plan_regions.h"
 
@@ -23,7 +24,14 @@ LayoutScript script_over(LayoutScript::Level base, const Plan& plan) {
 Operations operations_of(const RemeshTask& task, const Plan& plan) {
   return [&](Construction& made) {
     repatch_regions(made, plan.regions, task.source.placement, task.progress.part(0.55, 0.6));
-    return plan.regions;
+    // What the plan has no operation for opens as it would without a plan.
+    std::vector<Plan::Region> regions = plan.regions;
+    const LateTopology late = open_late(made, task, plan_budget(task.options, task.source, {}));
+    if (!late.unopened.empty())
+      throw Error(ErrorCode::Unsupported, "the plan's topology[" + std::to_string(late.unopened.front().first) +
+                                              "] cannot open on this surface: " + late.unopened.front().second);
+    regions.insert(regions.end(), late.regions.begin(), late.regions.end());
+    return regions;
   };
 }
 
@@ -117,7 +125,8 @@ Candidate planned_candidate(const RemeshTask& task, const Plan& plan) {
   std::optional<Candidate> again = make_again(task, plan);
   Candidate c = again ? std::move(*again) : plan.tower ? grow(task, plan) : lay_out(task, plan);
   // What was asked for is what was done, word for word; a chain of cubes alone has become quads.
-  if (again || !plan.tower) c.plan = options.plan;
+  const std::size_t regions = plan_from_json(c.plan).regions.size();
+  if ((again || !plan.tower) && regions == plan.regions.size()) c.plan = options.plan;
   const Budget budget = plan_budget(options, task.source, {});
   const std::int64_t euler = task.source.topology.euler;
   c.levels = budget.levels;

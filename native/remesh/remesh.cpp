@@ -3,6 +3,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -22,6 +23,7 @@ void check_options(const RemeshOptions& options) {
   if (!(options.error >= 0)) refuse("error must not be negative");
   if (options.levels > limits::most_levels) refuse("levels must be at most " + std::to_string(limits::most_levels));
   if (!(options.drop_components >= 0 && options.drop_components < 1)) refuse("drop_components must be in [0, 1)");
+  if (!(options.remove_noise >= 0 && options.remove_noise < 1)) refuse("remove_noise must be in [0, 1)");
   if (options.base == BaseSize::Given && options.base_quads < 1) refuse("base_quads must be positive");
 }
 
@@ -63,7 +65,7 @@ Found<Candidate> another_candidate(const RemeshTask& task) {
   RemeshOptions options = task.options;
   const bool minimal = may_be_minimal(task);
   if (minimal) options.base = BaseSize::Minimal;
-  const RemeshTask other{options, task.source, task.progress, task.watch};
+  const RemeshTask other{options, task.source, task.base, task.progress, task.watch};
   Found<Candidate> c = search_candidate(other, {}, base_requests(options, !minimal)).candidate;
   if (c) c = {fitted(other, std::move(*c), true), {}};
   return c;
@@ -85,23 +87,57 @@ void keep_better(Candidate& best, Found<Candidate> other) {
   if (other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2) best = std::move(*other);
 }
 
-// The best of what is tried.
-Candidate best_candidate(const RemeshTask& task) {
+// The best of what is tried. Not fitted where some of the topology finds no room to open.
+Found<Candidate> best_candidate(const RemeshTask& task) {
   CandidateSearch first = search_candidate(task, {}, base_requests(task.options, false));
-  if (!first.candidate) throw Error(first.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, first.candidate.reason);
+  if (!first.candidate) {
+    if (task.base.series) return first.candidate;
+    throw Error(first.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, first.candidate.reason);
+  }
+  if (!first.candidate->unopened.empty()) return std::move(first.candidate);
   Candidate best = fitted(task, std::move(*first.candidate), true);
-  if (task.options.error > 0 || !misses_a_limb(task, best)) return best;
+  if (task.options.error > 0 || !misses_a_limb(task, best)) return {std::move(best), {}};
   keep_better(best, another_candidate(task));
   if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
-  return best;
+  return {std::move(best), {}};
+}
+
+// What finds no room to open above the base opens in it: then the base is another one.
+Candidate searched_remesh(const RemeshOptions& options, const Source& source, std::vector<LateEvent> events, BaseSurface& base,
+                          const Progress& progress, Stopwatch& watch) {
+  std::vector<BaseSurface::Unopened> unopened;
+  for (;;) {
+    base = base_surface(source.repaired, source.placement, events);
+    base.unopened = unopened;
+    const RemeshTask task{options, source, base, progress, watch};
+    Found<Candidate> best = best_candidate(task);
+    if (best && best->unopened.empty()) return std::move(*best);
+    std::vector<std::pair<int, std::string>> without;
+    if (best)
+      without = std::move(best->unopened);
+    else
+      for (std::size_t e = 0; e < events.size(); ++e) without.push_back({static_cast<int>(e), best.reason});
+    for (auto at = without.rbegin(); at != without.rend(); ++at) {
+      unopened.push_back({std::move(events[at->first].event), std::move(at->second)});
+      events.erase(events.begin() + at->first);
+    }
+  }
+}
+
+Candidate planned_remesh(const RemeshOptions& options, const Source& source, const Plan& plan, std::vector<LateEvent> events, BaseSurface& base,
+                         const Progress& progress, Stopwatch& watch) {
+  base = base_surface(source.repaired, source.placement, events);
+  const RemeshTask task{options, source, base, progress, watch};
+  return fitted(task, planned_candidate(task, plan), false);
 }
 
 // Everything was computed around the origin: brings maps and meshes to where the input stands.
-void place(Candidate& c, const Placement& placement) {
+void place(Candidate& c, const Placement& placement, const SurfaceSeries* series) {
   HybridMesh& h = c.hierarchy;
   for (int n = 0; n < h.node_count(); ++n)
     if (const PatchMap* map = h.map(n)) {
       PatchMap placed = *map;
+      if (series) name_input(placed, *series);
       for (Vec3& p : placed.positions) p = placement.from_unit(p);
       h.set_map(n, std::move(placed));
     }
@@ -121,13 +157,19 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
   if (!options.plan.empty()) plan = plan_from_json(options.plan);
   Stopwatch watch;
   Source source = read_source(input, options, progress.part(0, 0.05), watch);
-  const RemeshTask task{options, source, progress, watch};
-  Candidate best = plan ? fitted(task, planned_candidate(task, *plan), false) : best_candidate(task);
+  BaseSurface base;
+  watch.start("topology");
+  std::vector<LateEvent> events =
+      plan ? late_events_of(*plan, source.repaired, progress) : find_late_events(source.repaired, source.topology, options, progress);
+  watch.stop();
+  Candidate best = plan && plan->has_base() ? planned_remesh(options, source, *plan, std::move(events), base, progress, watch)
+                                            : searched_remesh(options, source, std::move(events), base, progress, watch);
+  const RemeshTask task{options, source, base, progress, watch};
   progress.stage("measure");
   watch.start("measure");
   nlohmann::ordered_json report = describe_remesh(task, input, best);
   watch.stop();
-  place(best, source.placement);
+  place(best, source.placement, base.series.get());
   report["seconds"] = watch.json();
   progress(1);
   return {std::move(best.hierarchy), std::move(best.final_mesh), std::move(source.repaired),

@@ -13,6 +13,10 @@
 namespace hybrid_mesh {
 
 enum class Refinement { Uniform, Adaptive };
+// Whether a base is made for each component, or one for all, which tubes join until they part on finer levels.
+enum class Components { Apart, Joined };
+// Where the topology that the base domain need not have opens: on finer levels, or in the base. Auto: late with a minimal base.
+enum class TopologyMode { Auto, Late, Base };
 enum class BaseSize { Auto, Minimal, Given };
 
 struct RemeshOptions {
@@ -22,7 +26,10 @@ struct RemeshOptions {
   Refinement refinement = Refinement::Uniform;
   FaceClosure faces = FaceClosure::Quads;  // what becomes of leaves with hanging nodes (adaptive)
   BaseSize base = BaseSize::Auto;
-  int base_quads = 0;            // with BaseSize::Given
+  int base_quads = 0;  // with BaseSize::Given
+  TopologyMode topology = TopologyMode::Auto;
+  Components components = Components::Apart;
+  double remove_noise = 0;       // handles and tunnels with shorter loops, as a fraction of the bounding-box diagonal, are closed for good
   double stretch_threshold = 4;  // above it skin is grown (irregular operations)
   bool semi_regular = false;     // no irregular operations
   double drop_components = 0;    // see RepairOptions

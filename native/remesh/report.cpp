@@ -42,6 +42,23 @@ Json describe_input(const PolygonSoup& input, const Source& source) {
           {"genus", source.topology.genus},           {"repaired", r}};
 }
 
+// What has opened, and on which level: 0 is the base.
+Json describe_topology(const RemeshTask& task, const Candidate& c) {
+  Json out{{"loops", Json::array()}, {"tubes", Json::array()}, {"boundaries", Json::array()}};
+  const auto add = [&](const TopologyEvent& event, double diagonal, int level, const std::string& reason) {
+    Json entry{{"length", event.length / diagonal}};
+    if (event.kind == EventKind::Cut) entry["kind"] = event.loop_kind == LoopKind::Handle ? "handle" : "tunnel";
+    entry["level"] = level;
+    if (!reason.empty()) entry["reason"] = reason;
+    out[event.kind == EventKind::Cut ? "loops" : event.kind == EventKind::Tube ? "tubes" : "boundaries"].push_back(std::move(entry));
+  };
+  out["removed_handles"] = task.source.removed_handles;
+  const double diagonal = task.source.placement.diagonal;
+  for (std::size_t e = 0; e < c.opened_on.size(); ++e) add(task.base.series->events[e], diagonal, c.opened_on[e], "");
+  for (const BaseSurface::Unopened& u : task.base.unopened) add(u.event, diagonal, 0, u.reason);
+  return out;
+}
+
 // Irregular vertices of the final mesh, by what made them.
 Json irregular_counts(const Candidate& c) {
   std::int64_t of_base = 0, of_operations = 0, of_transitions = 0;
@@ -129,7 +146,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
   const QuadQuality q = quad_quality(c.final_mesh);
   Json report;
   report["input"] = describe_input(input, task.source);
-  report["topology"] = {{"loops", Json::array()}, {"tubes", Json::array()}};
+  report["topology"] = describe_topology(task, c);
   report["base"] = {{"quads", c.base_quads}, {"vertices", c.base_vertices}};
   report["levels"] = c.level_reports;
   report["final"] = {{"vertices", c.final_mesh.points.size()},

@@ -15,17 +15,6 @@ constexpr int kLevel = 2;    // above the base: towers there take a sixteenth of
 constexpr int kRounds = 2;   // of operations: what sticks out of the first ones' quads grows skin in the second
 constexpr int kTrials = 30;  // regions that are tried out in a round
 
-// By addresses, which stay as they are while other regions are laid out anew.
-Plan::Region region_of(const RegionRepatch& repatch, const Construction& made) {
-  Plan::Region region;
-  region.level = made.level();
-  for (const int q : repatch.patches) region.quads.push_back(to_string(made.quads().address(q)));
-  region.pattern = repatch.pattern;
-  for (const PatchSide& start : repatch.starts) region.starts.push_back({to_string(made.quads().address(start.patch)), start.side});
-  region.buffer_rings = repatch.buffer_rings;
-  return region;
-}
-
 bool has_skin(const RemeshOptions& options, const Budget& budget) {
   // Not for adaptive meshes: they would begin with all quads of that level.
   return !options.semi_regular && options.base == BaseSize::Auto && options.refinement == Refinement::Uniform && budget.levels > kLevel;

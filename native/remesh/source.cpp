@@ -2,6 +2,7 @@
 #include "remesh/source.h"
 
 #include "surface/fingerprint.h"
+#include "topology/topological_noise.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -23,6 +24,24 @@ std::string describe(const RepairReport& r) {
   return text;
 }
 
+// For good: the surface that is remeshed does not have them.
+void close_small_handles(Source& source, double length, const Progress& progress) {
+  ClosedNoise closed = close_noise(source.repaired, length * source.placement.diagonal, progress);
+  source.removed_handles = closed.handles;
+  source.repaired = std::move(closed.surface);
+  // Caps show what is beside them.
+  TriangleSurface& surface = source.repaired;
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t h = 0; h < surface.opposite.size(); ++h) {
+      const int across = surface.opposite[h];
+      if (surface.source_face[h / 3] >= 0 || across < 0 || surface.source_face[across / 3] < 0) continue;
+      surface.source_face[h / 3] = surface.source_face[across / 3];
+      any = true;
+    }
+  }
+}
+
 }  // namespace
 
 Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch) {
@@ -34,8 +53,9 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
   source.repaired = repair(input, repair_options, source.repairs, progress);
   if (options.strict && source.repairs.changed())
     throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(source.repairs));
-  source.topology = summarize_topology(to_soup(source.repaired));
   source.placement = placement_of(source.repaired.points);
+  if (options.remove_noise > 0) close_small_handles(source, options.remove_noise, progress);
+  source.topology = summarize_topology(to_soup(source.repaired));
   source.area = area_of(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
   source.fingerprint = fingerprint(source.repaired);
   PolygonSoup unit = input;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/context.h"
+#include "remesh/base_surface.h"
 #include "remesh/remesh.h"
 #include "remesh/stopwatch.h"
 #include "remesh/working_surface.h"
@@ -17,6 +18,7 @@ namespace hybrid_mesh {
 struct Source {
   TriangleSurface repaired;  // where the input stands
   RepairReport repairs;
+  int removed_handles = 0;   // of noise, see RemeshOptions::remove_noise
   TopologySummary topology;  // of `repaired`
   Placement placement;       // that brings it to unit size
   double area = 0;           // of unit size
@@ -28,6 +30,7 @@ struct Source {
 struct RemeshTask {
   const RemeshOptions& options;
   const Source& source;
+  const BaseSurface& base;
   const Progress& progress;
   Stopwatch& watch;
 };

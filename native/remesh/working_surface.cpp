@@ -39,19 +39,6 @@ void split_chords(WorkingSurface& surface) {
   }
 }
 
-// Weights of a place for the corners of a face; false if it does not lie on it.
-bool weights_on(const SurfacePoint& place, int face, const TriangleSurface& surface, Weights& weights) {
-  weights = place.weights;
-  if (place.face == face) return true;
-  weights = {0, 0, 0};
-  double sum = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k)
-      if (surface.faces[place.face][k] == surface.faces[face][i]) weights[i] += place.weights[k], sum += place.weights[k];
-  constexpr double rounding = 1e-9;
-  return sum > 1 - rounding;
-}
-
 // Barycentrics of the point of the triangle's plane next to p, moved onto the triangle.
 Weights weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
@@ -108,7 +95,7 @@ void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired)
 }
 
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
-                                    const WorkingSizes& sizes) {
+                                    const std::vector<char>& held, const WorkingSizes& sizes) {
   TriangleSurface placed = repaired;
   for (Vec3& p : placed.points) p = placement.to_unit(p);
   const double triangle = area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
@@ -118,6 +105,7 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   options.shortest_edge = sizes.shortest * edge;
   options.collapsible = sizes.collapsible * edge;
   options.tolerance = std::min(sizes.tolerance * edge, sizes.most_tolerance);
+  options.held = held;
   options.needles.area = sizes.needle_triangles * triangle;
   WellShaped shaped = make_well_shaped(placed, options, progress);
   WorkingSurface w;

@@ -44,9 +44,9 @@ std::int64_t working_faces(double base_quads, std::int64_t vertices);
 
 double area_of(const TriangleSurface& surface);
 
-// `faces`: see working_faces(). Where the repaired surface's
-// are smaller, they stay.
+// `faces`: see working_faces(). Where the repaired surface's are smaller, they stay. `held`: per face of it whether nothing may be mended there;
+// empty: of none.
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
-                                    const WorkingSizes& sizes = WorkingSizes());
+                                    const std::vector<char>& held = {}, const WorkingSizes& sizes = WorkingSizes());
 
 }  // namespace hybrid_mesh

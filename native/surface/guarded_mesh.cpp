@@ -100,6 +100,7 @@ bool GuardedMesh::flip(int h) {
   // Both surfaces would be within the tolerance of the input. A fold bulges nowhere.
   const double tolerance = tolerance_at(h);
   if (moves > 2 * tolerance || is_curve(h)) return false;
+  if (tolerance == 0 && inside_[h / 3] != inside_[o / 3]) return false;
   const Vec3 up = area_vector(h / 3) + area_vector(o / 3);
   if (!(area_vector(a, d, c).dot(up) > 0 && area_vector(d, b, c).dot(up) > 0)) return false;
   if (!mesh_.can_flip(h)) return false;
@@ -231,6 +232,19 @@ bool GuardedMesh::collapse(int h, double enough) {
   return true;
 }
 
+// The place of a point of an edge, where a face beside it lies in a face of the input. What is nearest need not be it: caps coincide.
+std::optional<SurfacePoint> GuardedMesh::place_on_edge(int h, double fraction) const {
+  for (const int g : {h, mesh_.opposite[h]}) {
+    const int face = g < 0 ? -1 : inside_[g / 3];
+    std::array<double, 3> from, to;
+    if (face < 0 || !weights_on(place_[mesh_.from(h)], face, input_, from) || !weights_on(place_[mesh_.to(h)], face, input_, to)) continue;
+    SurfacePoint place{face, {}};
+    for (int k = 0; k < 3; ++k) place.weights[k] = (1 - fraction) * from[k] + fraction * to[k];
+    return place;
+  }
+  return std::nullopt;
+}
+
 int GuardedMesh::split(int h, double fraction) {
   const int a = mesh_.from(h), b = mesh_.to(h), o = mesh_.opposite[h];
   const Vec3 p = points_[a], d = points_[b] - p;
@@ -244,16 +258,20 @@ int GuardedMesh::split(int h, double fraction) {
     constexpr double near = 0.2;  // a rather even split is worth more than a point that was there before
     if (off(nearest) < near) at = nearest;
   }
-  const ClosestPoint closest = query().closest(at, place_[a].face);
-  const double moves = std::sqrt(closest.squared_distance);
-  constexpr double rounding = 1e-13;
-  if (moves > rounding) {
-    at = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) at += closest.weights[k] * input_.points[input_.faces[closest.face][k]];
+  std::optional<SurfacePoint> place;
+  if (passed.empty()) place = place_on_edge(h, fraction);
+  if (!place) {
+    const ClosestPoint closest = query().closest(at, place_[a].face);
+    constexpr double rounding = 1e-13;
+    if (std::sqrt(closest.squared_distance) > rounding) {
+      at = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) at += closest.weights[k] * input_.points[input_.faces[closest.face][k]];
+    }
+    place = {closest.face, closest.weights};
   }
   const int m = mesh_.split(h);
   points_.push_back(at);
-  place_.push_back({closest.face, closest.weights});
+  place_.push_back(*place);
   passed_.resize(mesh_.edge_count);
   const int beyond = mesh_.edge[EditMesh::next(mesh_.opposite[EditMesh::next(h)])];
   // As far as the point went from the edge, that is: not what it is off the input.

@@ -61,6 +61,7 @@ class GuardedMesh {
 
  private:
   struct Star;
+  std::optional<SurfacePoint> place_on_edge(int h, double fraction) const;
   bool gather(int h, Star& star) const;
   bool stays_on_curve(int h, Star& star) const;
   double deviation_of_star(const Star& star, int u) const;

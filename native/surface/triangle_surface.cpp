@@ -9,6 +9,18 @@
 
 namespace hybrid_mesh {
 
+bool weights_on(const SurfacePoint& place, int face, const TriangleSurface& surface, std::array<double, 3>& weights) {
+  weights = place.weights;
+  if (place.face == face) return true;
+  weights = {0, 0, 0};
+  double sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (surface.faces[place.face][k] == surface.faces[face][i]) weights[i] += place.weights[k], sum += place.weights[k];
+  constexpr double rounding = 1e-9;
+  return sum > 1 - rounding;
+}
+
 void connect_half_edges(TriangleSurface& surface) {
   const int point_count = static_cast<int>(surface.points.size());
   if (surface.faces.size() > static_cast<std::size_t>(std::numeric_limits<int>::max() / 3))

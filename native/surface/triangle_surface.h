@@ -32,6 +32,9 @@ struct TriangleSurface {
   bool empty() const { return faces.empty(); }
 };
 
+// The weights of a place for the corners of a face; false if it does not lie on the face, an edge or corner of it.
+bool weights_on(const SurfacePoint& place, int face, const TriangleSurface& surface, std::array<double, 3>& weights);
+
 // Fills `opposite` from `faces`. Throws Error{InvalidInput} if an edge has more than two faces or two faces that run
 // along it in the same direction.
 void connect_half_edges(TriangleSurface& surface);

@@ -26,7 +26,9 @@ class Shaping {
         least_angle_(radians(options.least_angle)),
         stamp_(input.faces.size(), 0) {
     mesh_.release(std::vector<char>(input.faces.size(), 1));
-    mesh_.release(needle_regions(mesh_, options.needles));
+    std::vector<char> released = needle_regions(mesh_, options.needles);
+    for (std::size_t f = 0; f < options.held.size(); ++f) released[f] = released[f] && !options.held[f];
+    mesh_.release(std::move(released));
   }
 
   void run() {

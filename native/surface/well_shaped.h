@@ -21,6 +21,7 @@ struct WellShapedOptions {
   double least_bent_angle = 12;
   double sharp_angle = 30;             // degrees between normals; such edges are features, whose points move along them only
   NeedleOptions needles;               // where triangles are mended
+  std::vector<char> held;              // per face of the input, or none: faces that are not, whatever their shape
   double small_corner = 60;            // degrees; where features meet at less, their splits keep the same distances from the corner
   std::int64_t most_points = 1000000;  // no point is added beyond
 };

@@ -22,6 +22,15 @@ BASES = (
     ("MIN", "Minimal", "As few base quads as the surface allows"),
     ("GIVEN", "Given", "A given number of base quads"),
 )
+TOPOLOGIES = (
+    ("AUTO", "Automatic", "On finer levels with a minimal base, else in the base"),
+    ("LATE", "Late", "Handles, tunnels and boundaries open on the first level whose quads can show them"),
+    ("BASE", "In the Base", "The base domain has the surface's topology"),
+)
+COMPONENTS = (
+    ("APART", "Apart", "A base domain for each component"),
+    ("JOINED", "Joined", "One base domain for all components, which part on finer levels"),
+)
 
 # Blender's whole numbers have 32 bits.
 _LARGEST_WHOLE_NUMBER = 2**31 - 1
@@ -58,6 +67,8 @@ class RemeshProperties:
     base_quads: IntProperty(
         name="Base Quads", description="Quads of the base domain", default=300, min=1, max=_whole(limits().most_base_quads), soft_max=5000
     )
+    topology: EnumProperty(name="Topology", description="Where handles, tunnels and boundaries open", items=TOPOLOGIES, default="AUTO")
+    components: EnumProperty(name="Components", description="What the base domain has of components", items=COMPONENTS, default="APART")
     stretch: FloatProperty(
         name="Stretch", description="Grow skin where the map is stretched more than this", default=4, min=limits().least_stretch_threshold,
         max=limits().most_stretch_threshold, soft_max=20,
@@ -66,6 +77,10 @@ class RemeshProperties:
     drop_components: FloatProperty(
         name="Drop Components", description="Remove components with less than this fraction of the whole area", default=0, min=0,
         max=_below(limits().end_of_drop_components), soft_max=0.99, precision=4,
+    )  # fmt: skip
+    remove_noise: FloatProperty(
+        name="Remove Noise", description="Close handles and tunnels for good whose loop is shorter than this fraction of the bounding-box diagonal",
+        default=0, min=0, max=_below(limits().end_of_remove_noise), soft_max=0.1, precision=4, step=0.1,
     )  # fmt: skip
     strict: BoolProperty(name="Strict", description="Refuse a surface that needs repair instead of repairing it")
     seed: IntProperty(name="Seed", description="Of what is arbitrary", default=1, min=0, max=_whole(limits().most_seed))
@@ -93,6 +108,9 @@ def core_settings(properties):
         refinement=properties.refinement.lower(),
         faces=properties.faces.lower(),
         base=properties.base_quads if properties.base == "GIVEN" else properties.base.lower(),
+        topology=properties.topology.lower(),
+        components=properties.components.lower(),
+        remove_noise=properties.remove_noise,
         stretch_threshold=properties.stretch,
         semi_regular=properties.semi_regular,
         drop_components=properties.drop_components,
@@ -113,6 +131,9 @@ def apply_settings(properties, settings):
     properties.base = "GIVEN" if given else settings.base.upper()
     if given:
         properties.base_quads = settings.base
+    properties.topology = settings.topology.upper()
+    properties.components = settings.components.upper()
+    properties.remove_noise = settings.remove_noise
     properties.stretch = settings.stretch_threshold
     properties.semi_regular = settings.semi_regular
     properties.drop_components = settings.drop_components
@@ -140,9 +161,12 @@ def draw_advanced(layout, properties):
     column.prop(properties, "base")
     if properties.base == "GIVEN":
         column.prop(properties, "base_quads")
+    column.prop(properties, "topology")
+    column.prop(properties, "components")
     column.prop(properties, "stretch")
     column.prop(properties, "semi_regular")
     column.prop(properties, "drop_components")
+    column.prop(properties, "remove_noise")
     column.prop(properties, "strict")
     column.prop(properties, "seed")
     column.prop(properties, "threads")

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "layout/drawn/face_filling.h"
+#include "layout/operations/region_exchange.h"
 #include "layout/operations/region_outline.h"
 #include "layout/regions/patch_sets.h"
 #include "layout/regions/region_layout.h"
@@ -139,7 +140,9 @@ DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, cons
   const PatchRegion& region = local.in_level;
   Kind kind = pattern.kind;
   // Rows between rims of different numbers of sides would be cut open somewhere, and are seldom even.
-  if (kind == Kind::Automatic && !region.is_disk()) kind = has_rings(region) ? Kind::Rows : Kind::Even;
+  const bool disks = std::all_of(region.pieces.begin(), region.pieces.end(),
+                                 [](const RegionPiece& p) { return p.euler == 1 && p.rims.size() == 1 && p.open_loops == 0; });
+  if (kind == Kind::Automatic && !disks) kind = has_rings(region) ? Kind::Rows : Kind::Even;
   if (kind == Kind::Even) return even_in(surface, local, pattern.even_quads, progress);
   LayoutEdit edit;
   std::vector<std::vector<int>> spokes;
@@ -182,6 +185,16 @@ std::vector<int> with_rings(const QuadGraph& level, const std::vector<int>& patc
   return out;
 }
 
+// Has events of the level's surface open in the region, which gets the pieces that it has then.
+void open_events(const LevelState& state, const std::vector<int>& events, LocalRegion& region, RegionSurface& surface, GluedMaps& glued) {
+  if (events.empty()) return;
+  for (const int e : events)
+    if (e < 0 || e >= static_cast<int>(state.surface.open.size()) || state.surface.open[e])
+      throw Error(ErrorCode::InvalidInput, "event " + std::to_string(e) + " of the topology cannot open: it is open, or there is none");
+  surface = exchanged(surface, *state.surface.series, events, state.placement, glued);
+  region.in_part.pieces = region.in_level.pieces = pieces_of(surface, region.in_part);
+}
+
 // Smooths the map of a part of the level, and holds its rim where the level goes on, so that the maps around still fit. Returns its energy beyond an
 // isometry's.
 double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<std::array<bool, 4>>& held, GlobalMapOptions options,
@@ -208,7 +221,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   std::vector<PatchMap> maps = maps_of(state, quads);
   for (PatchMap& map : maps)
     for (Vec3& p : map.positions) p = state.placement.to_unit(p);
-  const GluedMaps glued = glue_patch_maps(maps, part_of(level, quads));
+  GluedMaps glued = glue_patch_maps(maps, part_of(level, quads));
   MappedSurface part = glued.mapped;
   progress(0.2);
 
@@ -220,8 +233,10 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   for (PatchSide& start : starts) start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
   local.in_part = *make_region(part.surface, first, starts, loops);
   RegionSurface surface = surface_of(part.surface, local.in_part);
+  open_events(state, repatch.opens, local, surface, glued);
 
   MappedEdit out;
+  out.opens = repatch.opens;
   const double scale = state.placement.diagonal * std::sqrt(static_cast<double>(level.patch_count()) / state.area);
   const std::vector<double> energies = patch_energies(part, scale, GlobalMapOptions().theta);
   for (std::size_t k = 0; k < energies.size(); ++k)
@@ -256,7 +271,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   ChartMesh charts(smoothed.surface, corners);
   charts.scale = scale;
   out.energy_after = relax(charts, smoothed.surface, held, repatch.map, progress.part(0.5, 0.8));
-  std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.mapped.surface.mesh.faces, progress.part(0.8, 1));
+  std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.faces, progress.part(0.8, 1));
   for (std::size_t k = 0; k < relaxed.size(); ++k) {
     if (const char* defect = find_map_defect(fresh[k]); *defect) throw NoMap(std::string("the map of a quad of the region: ") + defect);
     glued.trace(fresh[k]);

@@ -32,13 +32,15 @@ struct RegionRepatch {
   std::vector<int> patches;
   std::vector<PatchSide> starts;  // the sides that begin at the first corners of the first rims, see make_region()
   RegionPattern pattern;          // its strokes where the level's maps have the surface
-  int buffer_rings = 1;           // so many rings of quads around are relaxed with the new ones; 0: none
-  GlobalMapOptions map;           // how much is done for a smooth map
+  std::vector<int> opens;  // events of the level's surface that open: they are inside the region, and the pattern is laid out on what comes then
+  int buffer_rings = 1;    // so many rings of quads around are relaxed with the new ones; 0: none
+  GlobalMapOptions map;    // how much is done for a smooth map
 };
 
 // Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is
 // relaxed there and in the rings around, at their cost alone. What lies farther off keeps its map exactly. Throws LayoutError for curves that make no
-// quads of the region, Error{InvalidInput} if the quads are no region or the pattern does not fit it, NoMap if no map is found.
+// quads of the region, Error{InvalidInput} if the quads are no region, the pattern does not fit it, or an event is open
+// already, NoMap if no map is found.
 MappedEdit repatch_region(const LevelState& state, const RegionRepatch& region, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -134,6 +134,12 @@ std::vector<PatchRegion> regions_around(const QuadGraph& s, const PatchSet& in) 
     for (int ring = 0; ring < 4; ++ring) {
       // What the region encloses joins it.
       std::vector<std::vector<int>> outside = components(s, region, 0);
+      // Another component of the surface is not enclosed.
+      std::erase_if(outside, [&](const std::vector<int>& part) {
+        return std::none_of(part.begin(), part.end(), [&](int q) {
+          return std::any_of(s.neighbours[q].begin(), s.neighbours[q].end(), [&](const PatchSide& n) { return n.patch >= 0 && region[n.patch]; });
+        });
+      });
       std::size_t largest = 0;
       for (std::size_t i = 0; i < outside.size(); ++i)
         if (outside[i].size() > outside[largest].size()) largest = i;

@@ -46,7 +46,9 @@ class Relayout {
   LayoutChange run(PatchedSurface piece, RegionSurface surface) {
     part_ = std::move(surface);
     piece_ = std::move(piece);
-    return merge();
+    const LayoutChange change = merge();
+    drop_unused_points();
+    return change;
   }
 
  private:
@@ -102,6 +104,28 @@ class Relayout {
     whole = std::move(out);
     mapped_.corners = std::move(corners);
     return change;
+  }
+
+  // Those inside what the region's surface was before.
+  void drop_unused_points() {
+    PatchedSurface& whole = mapped_.surface;
+    std::vector<int> number(whole.mesh.points.size(), -1);
+    for (const auto& face : whole.mesh.faces)
+      for (const int v : face) number[v] = 0;
+    int count = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] < 0) continue;
+      number[v] = count;
+      whole.mesh.points[count] = whole.mesh.points[v];
+      whole.source[count++] = whole.source[v];
+    }
+    whole.mesh.points.resize(count);
+    whole.source.resize(count);
+    for (auto& face : whole.mesh.faces)
+      for (int& v : face) v = number[v];
+    for (auto& sides : whole.sides)
+      for (std::vector<int>& side : sides)
+        for (int& v : side) v = number[v];
   }
 
   MappedSurface& mapped_;

@@ -131,15 +131,25 @@ std::set<std::pair<int, int>> joined_outside(const QuadGraph& graph, const Patch
 }
 
 LayoutEdit automatic_edit(const QuadGraph& graph, const PatchRegion& region, const Progress& progress) {
-  const auto filled = [&](DiskLayout filling) {
+  const std::vector<int> wanted = regular_quads(graph, region);
+  const int corners = static_cast<int>(wanted.size());
+  // A disk in each rim.
+  const auto filled = [&](const auto& fill) {
     LayoutEdit edit = edit_of(region);
-    edit.quads = std::move(filling.quads);
-    edit.inner_nodes = filling.inner_nodes;
+    for (int r = 0; r < region.rim_count(); ++r) {
+      const int first = region.rims[r], around = region.rims[r + 1] - first;
+      const DiskLayout filling = fill(std::vector<int>(wanted.begin() + first, wanted.begin() + first + around));
+      for (std::array<int, 4> quad : filling.quads) {
+        for (int& k : quad) k = k < around ? first + k : corners + edit.inner_nodes + k - around;
+        edit.quads.push_back(quad);
+      }
+      edit.inner_nodes += filling.inner_nodes;
+    }
     return edit;
   };
-  LayoutEdit edit = filled(fill_disk(regular_quads(graph, region), progress));
+  LayoutEdit edit = filled([&](const std::vector<int>& quads_at) { return fill_disk(quads_at, progress); });
   if (find_edit_defect(graph, region, edit).empty()) return edit;
-  LayoutEdit ringed = filled(fill_disk_with_ring(static_cast<int>(region.corners.size()), progress));
+  LayoutEdit ringed = filled([&](const std::vector<int>& quads_at) { return fill_disk_with_ring(static_cast<int>(quads_at.size()), progress); });
   return find_edit_defect(graph, region, ringed).empty() ? ringed : edit;
 }
 

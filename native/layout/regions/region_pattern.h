@@ -19,7 +19,7 @@ std::vector<int> regular_quads(const QuadGraph& graph, const PatchRegion& region
 // sides are left out.
 std::set<std::pair<int, int>> joined_outside(const QuadGraph& graph, const PatchRegion& region);
 
-// Quads that fill a region that is a disk, found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where
+// Quads that fill a region of disks, each found from its boundary alone: its corners become regular where they can; see find_edit_defect() for where
 // they cannot. Throws Error{InvalidInput} for an odd number of boundary sides.
 LayoutEdit automatic_edit(const QuadGraph& graph, const PatchRegion& region, const Progress& progress);
 

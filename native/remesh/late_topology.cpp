@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "remesh/late_topology.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/found.h"
+#include "layout/operations/topology_opening.h"
+#include "remesh/plan_regions.h"
+
+namespace hybrid_mesh {
+namespace {
+
+constexpr double kQuadsAround = 4;  // of a loop that opens: with fewer the tube is a pinch
+constexpr int kMostMargin = 2;      // rings of quads beside what covers it
+
+class LateOpening {
+ public:
+  LateOpening(Construction& made, const RemeshTask& task, std::int64_t most_quads)
+      : made_(made), task_(task), most_quads_(most_quads), reasons_(made.surface().open.size()) {}
+
+  LateTopology run() {
+    if (!closed().empty() && made_.level() == 0) made_.refine();  // root quads stay
+    for (bool last = false; !last;) {
+      last = 4 * static_cast<std::int64_t>(made_.quads().graph().patch_count()) > most_quads_;
+      open_level(last);
+      if (closed().empty()) break;
+      if (!last) made_.refine();
+    }
+    for (const int e : closed()) out_.unopened.push_back({e, reasons_[e]});
+    return std::move(out_);
+  }
+
+ private:
+  std::vector<int> closed() const {
+    std::vector<int> out;
+    for (std::size_t e = 0; e < made_.surface().open.size(); ++e)
+      if (!made_.surface().open[e]) out.push_back(static_cast<int>(e));
+    return out;
+  }
+
+  // `last`: what is too small to be shown may open as well.
+  void open_level(bool last) {
+    const LevelState first = made_.state();
+    const double width = std::sqrt(first.area / first.quads.patch_count());
+    for (const int e : closed()) {
+      task_.progress.check();
+      const int level = task_.base.levels[e];
+      const double length = first.surface.series->events[e].length / task_.source.placement.diagonal;
+      if (made_.level() < level) continue;
+      if (level < 0 && length < kQuadsAround * width && !last) {
+        reasons_[e] = "its quads are too large to go around it";
+        continue;
+      }
+      // Close to its caps first.
+      for (int margin = 0; margin <= kMostMargin && !made_.surface().open[e]; ++margin) reasons_[e] = try_to_open(e, margin);
+    }
+  }
+
+  // Why it does not; nothing if it does.
+  std::string try_to_open(int e, int margin) {
+    const LevelState state = made_.state();
+    const Found<RegionRepatch> region = find_opening(state, covering_quads(state), e, margin);
+    if (!region) return region.reason;
+    try {
+      const Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
+      if (!mapped) return mapped.reason;
+      out_.regions.push_back(region_of(*region, made_));
+      made_.apply(*mapped, kAfterRounds);
+      return "";
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::InvalidInput) throw;
+      return error.what();  // the quads around have no room for such a layout
+    }
+  }
+
+  Construction& made_;
+  const RemeshTask& task_;
+  std::int64_t most_quads_;
+  std::vector<std::string> reasons_;
+  LateTopology out_;
+};
+
+}  // namespace
+
+LateTopology open_late(Construction& made, const RemeshTask& task, const Budget& budget) { return LateOpening(made, task, budget.vertices).run(); }
+
+}  // namespace hybrid_mesh
