@@ -18,9 +18,6 @@
 namespace hybrid_mesh {
 namespace {
 
-// A loop is looked for around so many of its points at a time.
-constexpr std::size_t bases_at_once = 4;
-
 struct Candidate {
   std::vector<int> points;
   double length = 0;
@@ -31,6 +28,13 @@ std::vector<int> canonical(std::vector<int> loop) {
   std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
   if (loop.back() < loop[1]) std::reverse(loop.begin() + 1, loop.end());
   return loop;
+}
+
+// Shortest first, each once.
+void sort_candidates(std::vector<Candidate>& all) {
+  std::sort(all.begin(), all.end(),
+            [](const Candidate& a, const Candidate& b) { return std::tie(a.length, a.points) < std::tie(b.length, b.points); });
+  all.erase(std::unique(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.points == b.points; }), all.end());
 }
 
 class LoopFinder {
@@ -45,6 +49,8 @@ class LoopFinder {
   bool take_all(const Progress& progress);
   bool take_some(const Progress& progress);
   void polish(const Progress& progress);
+  void stand_alone(std::size_t loop);
+  std::vector<Candidate> around_points(const std::vector<int>& points, double bound, const Progress& progress);
   std::vector<Candidate> candidates(const Progress& progress);
   Candidate tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const;
 
@@ -109,7 +115,8 @@ void LoopFinder::find_roots() {
   for (int c = 0; c < components; ++c) middle[c] /= weight[c];
   std::vector<double> nearest(count, std::numeric_limits<double>::infinity());
   std::vector<Vec3> from = middle;
-  for (int start = 0; start < std::max(1, options_.starts); ++start) {
+  const int starts = options_.starts > 0 ? options_.starts : std::clamp(100000 / std::max(count, 1), 3, 12);
+  for (int start = 0; start < starts; ++start) {
     std::vector<int> farthest(components, -1);
     for (int v = 0; v < count; ++v) {
       const int c = graph_.component(v);
@@ -163,36 +170,70 @@ std::vector<Candidate> LoopFinder::candidates(const Progress& progress) {
   return all;
 }
 
-// The loop replaced by the shortest through one of its points, as long as that is shorter.
+// The loop replaced by the shortest through one of its points, as long as that is shorter. Points are taken from all around it, far from each other.
 Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const {
   double length = search.length_of(loop);
-  // Twice in vain, around other points each time, and it is tight.
-  for (int round = 0, vain = 0; round < options_.tightenings && vain < 2; ++round) {
-    std::vector<int> best;
-    const std::size_t bases = std::min(bases_at_once, loop.size());
-    for (std::size_t k = 0; k < bases; ++k) {
-      const std::size_t at = (2 * k + vain) * loop.size() / (2 * bases);
-      // Sums in another order give other last digits: not shorter by more than that is as long.
-      std::vector<int> other = search.shortest(loop[at], length * (1 - 1e-9), progress);
-      if (other.empty()) continue;
-      length = search.length_of(other);
-      best = std::move(other);
-    }
-    vain = best.empty() ? vain + 1 : 0;
-    if (!best.empty()) loop = std::move(best);
+  // As often in vain, around other points each time, and it is tight.
+  constexpr int enough = 6;
+  // Fractions of the way round, every two neighbours far apart, and any few of them spread evenly.
+  constexpr double step = 0.381966011250105;
+  double at = 0;
+  for (int search_number = 0, vain = 0; search_number < options_.tightenings && vain < enough; ++search_number) {
+    at += step;
+    at -= std::floor(at);
+    // Sums in another order give other last digits: not shorter by more than that is as long.
+    std::vector<int> other = search.shortest(loop[static_cast<std::size_t>(at * static_cast<double>(loop.size()))], length * (1 - 1e-9), progress);
+    ++vain;
+    if (other.empty()) continue;
+    const double before = length;
+    length = search.length_of(other);
+    loop = std::move(other);
+    if (length < 0.999 * before) vain = 0;
   }
   return {canonical(std::move(loop)), length};
 }
 
-// Each loop found is looked for once more between the others, from its own points.
+// Each loop found is looked for once more between the others, around many of its points.
 void LoopFinder::polish(const Progress& progress) {
-  for (std::size_t i = given_; i < taken_.size() && taken_.size() <= 64; ++i) {
-    graph_.forget_taken();
-    for (std::size_t k = 0; k < taken_.size(); ++k)
-      if (k != i) graph_.take(taken_[k]);
-    graph_.renew_keys();
-    taken_[i] = tightened(searches_.local(), taken_[i], progress).points;
+  constexpr std::size_t most_loops = 64;
+  constexpr int most_rounds = 8;
+  // Searches of a large surface take longer, and find less that the first ones did not.
+  const auto bases = static_cast<std::size_t>(std::clamp(1000000 / graph_.point_count(), 8, 64));
+  if (taken_.size() > most_loops) return;
+  for (std::size_t i = given_; i < taken_.size(); ++i) {
+    stand_alone(i);
+    for (int round = 0; round < most_rounds; ++round) {
+      const std::vector<int> loop = taken_[i];
+      std::vector<int> around;
+      for (std::size_t k = 0, n = std::min(bases, loop.size()); k < n; ++k) around.push_back(loop[k * loop.size() / n]);
+      const double bound = searches_.local().length_of(loop) * (1 - 1e-9);
+      std::vector<Candidate> found = around_points(around, bound, progress);
+      if (found.empty()) break;
+      taken_[i] = std::move(found[0].points);
+    }
   }
+}
+
+// All loops but one are walls.
+void LoopFinder::stand_alone(std::size_t loop) {
+  graph_.forget_taken();
+  for (std::size_t k = 0; k < taken_.size(); ++k)
+    if (k != loop) graph_.take(taken_[k]);
+  graph_.renew_keys();
+}
+
+// The shortest loops through some points, if they are shorter than a bound, shortest first.
+std::vector<Candidate> LoopFinder::around_points(const std::vector<int>& points, double bound, const Progress& progress) {
+  std::vector<Candidate> all(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) {
+    LoopSearch& search = searches_.local();
+    std::vector<int> loop = search.shortest(points[k], bound, progress);
+    if (!loop.empty()) all[k] = {canonical(std::move(loop)), 0};
+    all[k].length = search.length_of(all[k].points);
+  });
+  std::erase_if(all, [](const Candidate& candidate) { return candidate.points.empty(); });
+  sort_candidates(all);
+  return all;
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 noise: closes what is shorter than LENGTH instead."""
 
 import json
-import resource
 import sys
 import time
 
 import numpy as np
+from hybrid_mesh.core import report
 
 
 def ours(points, offsets, indices):
@@ -58,7 +58,7 @@ def main(source, target, what="ours", *rest):
     cpu = time.process_time()
     measured = {"ours": ours, "meshlib": meshlib, "noise": noise}[what](*mesh, *rest)
     measured["cpu_seconds"] = time.process_time() - cpu
-    measured["peak_memory_bytes"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    measured["peak_memory_bytes"] = report.peak_memory_bytes()
     with open(target, "w", encoding="utf-8") as file:
         json.dump(measured, file)
 
