@@ -27,7 +27,7 @@ class CapShaper {
   double wanted(int h) const { return (size_[mesh_.from(h)] + size_[mesh_.to(h)]) / 2; }
   bool inner_edge(int h) const { return mesh_.face_alive(h / 3) && mesh_.opposite[h] >= 0; }
   int half_edges() const { return static_cast<int>(mesh_.origin.size()); }
-  double least_angle(int a, int b, int c) const;
+  double roundness(int a, int b, int c) const;
   void renew_sizes();
   void split_long();
   void collapse_short();
@@ -56,12 +56,13 @@ CapShaper::CapShaper(const std::vector<Vec3>& rim, const RimPatch& cap) : rim_(s
   at_ = disk.points;
 }
 
-double CapShaper::least_angle(int a, int b, int c) const {
-  const auto angle = [&](int x, int y, int z) {
-    const Vec3 u = at_[y] - at_[x], v = at_[z] - at_[x];
-    return std::atan2(u.cross(v).norm(), u.dot(v));
-  };
-  return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
+// Grows with the smallest angle: minus its cosine.
+double CapShaper::roundness(int a, int b, int c) const {
+  const Vec3 u = at_[b] - at_[a], v = at_[c] - at_[b], w = at_[a] - at_[c];
+  const double x = u.norm(), y = v.norm(), z = w.norm();
+  const double none = -1;
+  if (!(x > 0 && y > 0 && z > 0)) return none;
+  return std::min({u.dot(w) / (x * z), v.dot(u) / (y * x), w.dot(v) / (z * y)});
 }
 
 void CapShaper::renew_sizes() {
@@ -125,15 +126,16 @@ bool CapShaper::collapse_spares_shape(int h) const {
   int g = mesh_.out[v];
   do {
     const int a = mesh_.to(g), b = mesh_.apex(g);
-    before = std::min(before, least_angle(v, a, b));
+    before = std::min(before, roundness(v, a, b));
     if (a != u && b != u) {
-      after = std::min(after, least_angle(u, a, b));
+      after = std::min(after, roundness(u, a, b));
       const Vec3 old_normal = (at_[a] - at_[v]).cross(at_[b] - at_[v]), normal = (at_[a] - at_[u]).cross(at_[b] - at_[u]);
       spared = spared && normal.dot(old_normal) > 0;
     }
     g = mesh_.ccw(g);
   } while (g != mesh_.out[v]);
-  return spared && after > std::min(before, 0.3);
+  constexpr double sliver = -0.955;  // 17 degrees
+  return spared && after > std::min(before, sliver);
 }
 
 // Flips edges where the smallest angle beside them grows.
@@ -143,8 +145,8 @@ bool CapShaper::flip_bad() {
     if (!inner_edge(h)) continue;
     const int a = mesh_.from(h), b = mesh_.to(h), c = mesh_.apex(h), d = mesh_.apex(mesh_.opposite[h]);
     if (on_rim(c) && on_rim(d)) continue;
-    const double now = std::min(least_angle(a, b, c), least_angle(b, a, d));
-    const double then = std::min(least_angle(a, d, c), least_angle(d, b, c));
+    const double now = std::min(roundness(a, b, c), roundness(b, a, d));
+    const double then = std::min(roundness(a, d, c), roundness(d, b, c));
     if (!(then > now + 1e-6)) continue;
     // Both new faces look the way that the old ones do.
     const Vec3 sum = (at_[b] - at_[a]).cross(at_[c] - at_[a]) + (at_[a] - at_[b]).cross(at_[d] - at_[b]);

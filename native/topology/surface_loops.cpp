@@ -10,13 +10,19 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 
 #include "base/error.h"
+#include "topology/loop_cap.h"
 #include "topology/loop_graph.h"
 #include "topology/loop_kind.h"
+#include "topology/patch_hits.h"
 
 namespace hybrid_mesh {
 namespace {
+
+// Where there are more loops, they are noise: each is good enough.
+constexpr std::size_t most_loops_improved = 64;
 
 struct Candidate {
   std::vector<int> points;
@@ -49,6 +55,8 @@ class LoopFinder {
   bool take_all(const Progress& progress);
   bool take_some(const Progress& progress);
   void polish(const Progress& progress);
+  void clear_caps(const Progress& progress);
+  std::vector<int> points_near(const std::vector<int>& loop, double distance) const;
   void stand_alone(std::size_t loop);
   std::vector<Candidate> around_points(const std::vector<int>& points, double bound, const Progress& progress);
   std::vector<Candidate> candidates(const Progress& progress);
@@ -73,7 +81,10 @@ std::vector<std::vector<int>> LoopFinder::find(const std::vector<std::vector<int
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
     graph_.measure(attempt == 0 ? EdgeMeasure::Length : attempt == 1 ? EdgeMeasure::Count : EdgeMeasure::Random, attempt);
     if (take_all(progress)) {
-      if (attempt == 0) polish(progress);
+      if (attempt == 0) {
+        polish(progress);
+        clear_caps(progress);
+      }
       return taken_;
     }
     graph_.forget_taken();
@@ -195,11 +206,10 @@ Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, const
 
 // Each loop found is looked for once more between the others, around many of its points.
 void LoopFinder::polish(const Progress& progress) {
-  constexpr std::size_t most_loops = 64;
   constexpr int most_rounds = 8;
   // Searches of a large surface take longer, and find less that the first ones did not.
   const auto bases = static_cast<std::size_t>(std::clamp(1000000 / graph_.point_count(), 8, 64));
-  if (taken_.size() > most_loops) return;
+  if (taken_.size() > most_loops_improved) return;
   for (std::size_t i = given_; i < taken_.size(); ++i) {
     stand_alone(i);
     for (int round = 0; round < most_rounds; ++round) {
@@ -212,6 +222,57 @@ void LoopFinder::polish(const Progress& progress) {
       taken_[i] = std::move(found[0].points);
     }
   }
+}
+
+// Of loops whose caps meet the surface, others nearby whose caps do so less.
+void LoopFinder::clear_caps(const Progress& progress) {
+  if (options_.detour <= 1 || taken_.size() > most_loops_improved) return;
+  const PatchHits hits(surface_);
+  const auto hits_of = [&](const std::vector<int>& loop, int most) {
+    std::vector<Vec3> rim;
+    for (const int v : loop) rim.push_back(surface_.points[v]);
+    return hits.count(loop, cap_loop(rim), {}, most);
+  };
+  for (std::size_t i = given_; i < taken_.size(); ++i) {
+    int fewest = hits_of(taken_[i], std::numeric_limits<int>::max());
+    if (fewest == 0) continue;
+    stand_alone(i);
+    const std::vector<int> shortest = taken_[i];
+    const double length = searches_.local().length_of(shortest);
+    // A little longer and close by first.
+    for (const double part : {0.125, 0.25, 0.5, 1.0}) {
+      if (fewest == 0) break;
+      const double bound = (1 + part * (options_.detour - 1)) * length;
+      const std::vector<Candidate> others = around_points(points_near(shortest, part * length / 2), bound, progress);
+      std::vector<int> counts(others.size());
+      tbb::parallel_for(std::size_t{0}, others.size(), [&](std::size_t k) {
+        progress.check();
+        counts[k] = hits_of(others[k].points, fewest);
+      });
+      // The shortest of those with the fewest.
+      for (std::size_t k = 0; k < others.size(); ++k)
+        if (counts[k] < fewest) {
+          fewest = counts[k];
+          taken_[i] = others[k].points;
+        }
+    }
+  }
+}
+
+// Some points of the graph within a distance of a loop, in steps as even as their numbers are.
+std::vector<int> LoopFinder::points_near(const std::vector<int>& loop, double distance) const {
+  std::unordered_map<int, double> reached;
+  std::vector<int> queue = loop;
+  for (const int v : loop) reached[v] = 0;
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const double here = reached[queue[i]];
+    for (const LoopGraph::Arc* arc = graph_.begin(queue[i]); arc != graph_.end(queue[i]); ++arc)
+      if (here + arc->length < distance && !graph_.wall(arc->to) && reached.emplace(arc->to, here + arc->length).second) queue.push_back(arc->to);
+  }
+  const auto most = static_cast<std::size_t>(std::clamp(1000000 / graph_.point_count(), 12, 48));
+  std::vector<int> some;
+  for (std::size_t k = 0, n = std::min(most, queue.size()); k < n; ++k) some.push_back(queue[k * queue.size() / n]);
+  return some;
 }
 
 // All loops but one are walls.

@@ -25,7 +25,7 @@ struct LoopOptions {
   int starts = 0;
   int tightenings = 60;  // points of a loop around which a shorter one is looked for, at most
   // How many times longer than the shortest a loop may be if its cap meets the surface less; 1: the shortest loops are taken.
-  double detour = 1;
+  double detour = 1.5;
   // Longer loops are left out. Infinite: there is a loop for each unit of genus.
   double longest = std::numeric_limits<double>::infinity();
 };
