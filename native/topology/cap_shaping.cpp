@@ -34,6 +34,9 @@ class CapShaper {
   bool collapse_spares_shape(int h) const;
   bool flip_bad();
   void relax();
+  double worst_around(int v) const;
+  Vec3 normal_around(int v) const;
+  void mend();
 
   int rim_;
   EditMesh mesh_;
@@ -177,6 +180,47 @@ void CapShaper::relax() {
   }
 }
 
+double CapShaper::worst_around(int v) const {
+  double worst = 1;
+  int h = mesh_.out[v];
+  do {
+    worst = std::min(worst, roundness(v, mesh_.to(h), mesh_.apex(h)));
+    h = mesh_.ccw(h);
+  } while (h >= 0 && h != mesh_.out[v]);
+  return worst;
+}
+
+// Moves inner points only where the worst triangle around gets better, towards the middle of those around.
+void CapShaper::mend() {
+  for (int v = rim_; v < static_cast<int>(at_.size()); ++v) {
+    if (!mesh_.vertex_alive(v)) continue;
+    Vec3 middle = Vec3::Zero();
+    int count = 0;
+    mesh_.for_ring(v, [&](int w) {
+      middle += at_[w];
+      ++count;
+    });
+    middle /= count;
+    for (const double step : {1.0, 0.5, 0.25}) {
+      const double before = worst_around(v);
+      const Vec3 old = at_[v], old_normal = normal_around(v);
+      at_[v] = old + step * (middle - old);
+      if (worst_around(v) > before && normal_around(v).dot(old_normal) > 0) break;
+      at_[v] = old;
+    }
+  }
+}
+
+Vec3 CapShaper::normal_around(int v) const {
+  Vec3 sum = Vec3::Zero();
+  int h = mesh_.out[v];
+  do {
+    sum += (at_[mesh_.to(h)] - at_[v]).cross(at_[mesh_.apex(h)] - at_[v]);
+    h = mesh_.ccw(h);
+  } while (h >= 0 && h != mesh_.out[v]);
+  return sum;
+}
+
 RimPatch CapShaper::shape() {
   for (int round = 0; round < rounds; ++round) {
     renew_sizes();
@@ -185,7 +229,12 @@ RimPatch CapShaper::shape() {
     for (int sweep = 0; sweep < 4 && flip_bad(); ++sweep) continue;
     relax();
   }
-  for (int sweep = 0; sweep < 4 && flip_bad(); ++sweep) continue;
+  renew_sizes();
+  for (int round = 0; round < 4; ++round) {
+    collapse_short();
+    for (int sweep = 0; sweep < 4 && flip_bad(); ++sweep) continue;
+    mend();
+  }
   RimPatch cap;
   std::vector<int> number(at_.size(), -1);
   for (int v = 0; v < static_cast<int>(at_.size()); ++v) {
