@@ -16,6 +16,7 @@ void bind_modelling(pybind11::module_& module);      // the same
 void bind_region_update(pybind11::module_& module);  // the same
 void bind_remesh(pybind11::module_& module);
 void bind_job(pybind11::module_& module);
+void bind_topology(pybind11::module_& module);
 void bind_drawn_layout(pybind11::module_& module);
 
 }  // namespace hybrid_mesh

@@ -13,5 +13,6 @@ PYBIND11_MODULE(_native, module) {
   hybrid_mesh::bind_region_update(module);
   hybrid_mesh::bind_remesh(module);
   hybrid_mesh::bind_job(module);
+  hybrid_mesh::bind_topology(module);
   hybrid_mesh::bind_drawn_layout(module);
 }

@@ -27,13 +27,16 @@ class CapShaper {
   double wanted(int h) const { return (size_[mesh_.from(h)] + size_[mesh_.to(h)]) / 2; }
   bool inner_edge(int h) const { return mesh_.face_alive(h / 3) && mesh_.opposite[h] >= 0; }
   int half_edges() const { return static_cast<int>(mesh_.origin.size()); }
-  double least_angle(int a, int b, int c) const;
+  double roundness(int a, int b, int c) const;
   void renew_sizes();
   void split_long();
   void collapse_short();
   bool collapse_spares_shape(int h) const;
   bool flip_bad();
   void relax();
+  double worst_around(int v) const;
+  Vec3 normal_around(int v) const;
+  void mend();
 
   int rim_;
   EditMesh mesh_;
@@ -56,12 +59,13 @@ CapShaper::CapShaper(const std::vector<Vec3>& rim, const RimPatch& cap) : rim_(s
   at_ = disk.points;
 }
 
-double CapShaper::least_angle(int a, int b, int c) const {
-  const auto angle = [&](int x, int y, int z) {
-    const Vec3 u = at_[y] - at_[x], v = at_[z] - at_[x];
-    return std::atan2(u.cross(v).norm(), u.dot(v));
-  };
-  return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
+// Grows with the smallest angle: minus its cosine.
+double CapShaper::roundness(int a, int b, int c) const {
+  const Vec3 u = at_[b] - at_[a], v = at_[c] - at_[b], w = at_[a] - at_[c];
+  const double x = u.norm(), y = v.norm(), z = w.norm();
+  const double none = -1;
+  if (!(x > 0 && y > 0 && z > 0)) return none;
+  return std::min({u.dot(w) / (x * z), v.dot(u) / (y * x), w.dot(v) / (z * y)});
 }
 
 void CapShaper::renew_sizes() {
@@ -125,15 +129,16 @@ bool CapShaper::collapse_spares_shape(int h) const {
   int g = mesh_.out[v];
   do {
     const int a = mesh_.to(g), b = mesh_.apex(g);
-    before = std::min(before, least_angle(v, a, b));
+    before = std::min(before, roundness(v, a, b));
     if (a != u && b != u) {
-      after = std::min(after, least_angle(u, a, b));
+      after = std::min(after, roundness(u, a, b));
       const Vec3 old_normal = (at_[a] - at_[v]).cross(at_[b] - at_[v]), normal = (at_[a] - at_[u]).cross(at_[b] - at_[u]);
       spared = spared && normal.dot(old_normal) > 0;
     }
     g = mesh_.ccw(g);
   } while (g != mesh_.out[v]);
-  return spared && after > std::min(before, 0.3);
+  constexpr double sliver = -0.955;  // 17 degrees
+  return spared && after > std::min(before, sliver);
 }
 
 // Flips edges where the smallest angle beside them grows.
@@ -143,8 +148,8 @@ bool CapShaper::flip_bad() {
     if (!inner_edge(h)) continue;
     const int a = mesh_.from(h), b = mesh_.to(h), c = mesh_.apex(h), d = mesh_.apex(mesh_.opposite[h]);
     if (on_rim(c) && on_rim(d)) continue;
-    const double now = std::min(least_angle(a, b, c), least_angle(b, a, d));
-    const double then = std::min(least_angle(a, d, c), least_angle(d, b, c));
+    const double now = std::min(roundness(a, b, c), roundness(b, a, d));
+    const double then = std::min(roundness(a, d, c), roundness(d, b, c));
     if (!(then > now + 1e-6)) continue;
     // Both new faces look the way that the old ones do.
     const Vec3 sum = (at_[b] - at_[a]).cross(at_[c] - at_[a]) + (at_[a] - at_[b]).cross(at_[d] - at_[b]);
@@ -175,6 +180,47 @@ void CapShaper::relax() {
   }
 }
 
+double CapShaper::worst_around(int v) const {
+  double worst = 1;
+  int h = mesh_.out[v];
+  do {
+    worst = std::min(worst, roundness(v, mesh_.to(h), mesh_.apex(h)));
+    h = mesh_.ccw(h);
+  } while (h >= 0 && h != mesh_.out[v]);
+  return worst;
+}
+
+// Moves inner points only where the worst triangle around gets better, towards the middle of those around.
+void CapShaper::mend() {
+  for (int v = rim_; v < static_cast<int>(at_.size()); ++v) {
+    if (!mesh_.vertex_alive(v)) continue;
+    Vec3 middle = Vec3::Zero();
+    int count = 0;
+    mesh_.for_ring(v, [&](int w) {
+      middle += at_[w];
+      ++count;
+    });
+    middle /= count;
+    for (const double step : {1.0, 0.5, 0.25}) {
+      const double before = worst_around(v);
+      const Vec3 old = at_[v], old_normal = normal_around(v);
+      at_[v] = old + step * (middle - old);
+      if (worst_around(v) > before && normal_around(v).dot(old_normal) > 0) break;
+      at_[v] = old;
+    }
+  }
+}
+
+Vec3 CapShaper::normal_around(int v) const {
+  Vec3 sum = Vec3::Zero();
+  int h = mesh_.out[v];
+  do {
+    sum += (at_[mesh_.to(h)] - at_[v]).cross(at_[mesh_.apex(h)] - at_[v]);
+    h = mesh_.ccw(h);
+  } while (h >= 0 && h != mesh_.out[v]);
+  return sum;
+}
+
 RimPatch CapShaper::shape() {
   for (int round = 0; round < rounds; ++round) {
     renew_sizes();
@@ -183,7 +229,12 @@ RimPatch CapShaper::shape() {
     for (int sweep = 0; sweep < 4 && flip_bad(); ++sweep) continue;
     relax();
   }
-  for (int sweep = 0; sweep < 4 && flip_bad(); ++sweep) continue;
+  renew_sizes();
+  for (int round = 0; round < 4; ++round) {
+    collapse_short();
+    for (int sweep = 0; sweep < 4 && flip_bad(); ++sweep) continue;
+    mend();
+  }
   RimPatch cap;
   std::vector<int> number(at_.size(), -1);
   for (int v = 0; v < static_cast<int>(at_.size()); ++v) {

@@ -10,16 +10,19 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 
 #include "base/error.h"
+#include "topology/loop_cap.h"
 #include "topology/loop_graph.h"
 #include "topology/loop_kind.h"
+#include "topology/patch_hits.h"
 
 namespace hybrid_mesh {
 namespace {
 
-// A loop is looked for around so many of its points at a time.
-constexpr std::size_t bases_at_once = 4;
+// Where there are more loops, they are noise: each is good enough.
+constexpr std::size_t most_loops_improved = 64;
 
 struct Candidate {
   std::vector<int> points;
@@ -31,6 +34,13 @@ std::vector<int> canonical(std::vector<int> loop) {
   std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
   if (loop.back() < loop[1]) std::reverse(loop.begin() + 1, loop.end());
   return loop;
+}
+
+// Shortest first, each once.
+void sort_candidates(std::vector<Candidate>& all) {
+  std::sort(all.begin(), all.end(),
+            [](const Candidate& a, const Candidate& b) { return std::tie(a.length, a.points) < std::tie(b.length, b.points); });
+  all.erase(std::unique(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.points == b.points; }), all.end());
 }
 
 class LoopFinder {
@@ -45,6 +55,10 @@ class LoopFinder {
   bool take_all(const Progress& progress);
   bool take_some(const Progress& progress);
   void polish(const Progress& progress);
+  void clear_caps(const Progress& progress);
+  std::vector<int> points_near(const std::vector<int>& loop, double distance) const;
+  void stand_alone(std::size_t loop);
+  std::vector<Candidate> around_points(const std::vector<int>& points, double bound, const Progress& progress);
   std::vector<Candidate> candidates(const Progress& progress);
   Candidate tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const;
 
@@ -67,7 +81,10 @@ std::vector<std::vector<int>> LoopFinder::find(const std::vector<std::vector<int
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
     graph_.measure(attempt == 0 ? EdgeMeasure::Length : attempt == 1 ? EdgeMeasure::Count : EdgeMeasure::Random, attempt);
     if (take_all(progress)) {
-      if (attempt == 0) polish(progress);
+      if (attempt == 0) {
+        polish(progress);
+        clear_caps(progress);
+      }
       return taken_;
     }
     graph_.forget_taken();
@@ -109,7 +126,8 @@ void LoopFinder::find_roots() {
   for (int c = 0; c < components; ++c) middle[c] /= weight[c];
   std::vector<double> nearest(count, std::numeric_limits<double>::infinity());
   std::vector<Vec3> from = middle;
-  for (int start = 0; start < std::max(1, options_.starts); ++start) {
+  const int starts = options_.starts > 0 ? options_.starts : std::clamp(100000 / std::max(count, 1), 3, 12);
+  for (int start = 0; start < starts; ++start) {
     std::vector<int> farthest(components, -1);
     for (int v = 0; v < count; ++v) {
       const int c = graph_.component(v);
@@ -163,36 +181,120 @@ std::vector<Candidate> LoopFinder::candidates(const Progress& progress) {
   return all;
 }
 
-// The loop replaced by the shortest through one of its points, as long as that is shorter.
+// The loop replaced by the shortest through one of its points, as long as that is shorter. Points are taken from all around it, far from each other.
 Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const {
   double length = search.length_of(loop);
-  // Twice in vain, around other points each time, and it is tight.
-  for (int round = 0, vain = 0; round < options_.tightenings && vain < 2; ++round) {
-    std::vector<int> best;
-    const std::size_t bases = std::min(bases_at_once, loop.size());
-    for (std::size_t k = 0; k < bases; ++k) {
-      const std::size_t at = (2 * k + vain) * loop.size() / (2 * bases);
-      // Sums in another order give other last digits: not shorter by more than that is as long.
-      std::vector<int> other = search.shortest(loop[at], length * (1 - 1e-9), progress);
-      if (other.empty()) continue;
-      length = search.length_of(other);
-      best = std::move(other);
-    }
-    vain = best.empty() ? vain + 1 : 0;
-    if (!best.empty()) loop = std::move(best);
+  // As often in vain, around other points each time, and it is tight.
+  constexpr int enough = 6;
+  // Fractions of the way round, every two neighbours far apart, and any few of them spread evenly.
+  constexpr double step = 0.381966011250105;
+  double at = 0;
+  for (int search_number = 0, vain = 0; search_number < options_.tightenings && vain < enough; ++search_number) {
+    at += step;
+    at -= std::floor(at);
+    // Sums in another order give other last digits: not shorter by more than that is as long.
+    std::vector<int> other = search.shortest(loop[static_cast<std::size_t>(at * static_cast<double>(loop.size()))], length * (1 - 1e-9), progress);
+    ++vain;
+    if (other.empty()) continue;
+    const double before = length;
+    length = search.length_of(other);
+    loop = std::move(other);
+    if (length < 0.999 * before) vain = 0;
   }
   return {canonical(std::move(loop)), length};
 }
 
-// Each loop found is looked for once more between the others, from its own points.
+// Each loop found is looked for once more between the others, around many of its points.
 void LoopFinder::polish(const Progress& progress) {
-  for (std::size_t i = given_; i < taken_.size() && taken_.size() <= 64; ++i) {
-    graph_.forget_taken();
-    for (std::size_t k = 0; k < taken_.size(); ++k)
-      if (k != i) graph_.take(taken_[k]);
-    graph_.renew_keys();
-    taken_[i] = tightened(searches_.local(), taken_[i], progress).points;
+  constexpr int most_rounds = 8;
+  // Searches of a large surface take longer, and find less that the first ones did not.
+  const auto bases = static_cast<std::size_t>(std::clamp(1000000 / graph_.point_count(), 8, 64));
+  if (taken_.size() > most_loops_improved) return;
+  for (std::size_t i = given_; i < taken_.size(); ++i) {
+    stand_alone(i);
+    for (int round = 0; round < most_rounds; ++round) {
+      const std::vector<int> loop = taken_[i];
+      std::vector<int> around;
+      for (std::size_t k = 0, n = std::min(bases, loop.size()); k < n; ++k) around.push_back(loop[k * loop.size() / n]);
+      const double bound = searches_.local().length_of(loop) * (1 - 1e-9);
+      std::vector<Candidate> found = around_points(around, bound, progress);
+      if (found.empty()) break;
+      taken_[i] = std::move(found[0].points);
+    }
   }
+}
+
+// Of loops whose caps meet the surface, others nearby whose caps do so less.
+void LoopFinder::clear_caps(const Progress& progress) {
+  if (options_.detour <= 1 || taken_.size() > most_loops_improved) return;
+  const PatchHits hits(surface_);
+  const auto hits_of = [&](const std::vector<int>& loop, int most) {
+    std::vector<Vec3> rim;
+    for (const int v : loop) rim.push_back(surface_.points[v]);
+    return hits.count(loop, cap_loop(rim), {}, most);
+  };
+  for (std::size_t i = given_; i < taken_.size(); ++i) {
+    int fewest = hits_of(taken_[i], std::numeric_limits<int>::max());
+    if (fewest == 0) continue;
+    stand_alone(i);
+    const std::vector<int> shortest = taken_[i];
+    const double length = searches_.local().length_of(shortest);
+    // A little longer and close by first.
+    for (const double part : {0.125, 0.25, 0.5, 1.0}) {
+      if (fewest == 0) break;
+      const double bound = (1 + part * (options_.detour - 1)) * length;
+      const std::vector<Candidate> others = around_points(points_near(shortest, part * length / 2), bound, progress);
+      std::vector<int> counts(others.size());
+      tbb::parallel_for(std::size_t{0}, others.size(), [&](std::size_t k) {
+        progress.check();
+        counts[k] = hits_of(others[k].points, fewest);
+      });
+      // The shortest of those with the fewest.
+      for (std::size_t k = 0; k < others.size(); ++k)
+        if (counts[k] < fewest) {
+          fewest = counts[k];
+          taken_[i] = others[k].points;
+        }
+    }
+  }
+}
+
+// Some points of the graph within a distance of a loop, in steps as even as their numbers are.
+std::vector<int> LoopFinder::points_near(const std::vector<int>& loop, double distance) const {
+  std::unordered_map<int, double> reached;
+  std::vector<int> queue = loop;
+  for (const int v : loop) reached[v] = 0;
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const double here = reached[queue[i]];
+    for (const LoopGraph::Arc* arc = graph_.begin(queue[i]); arc != graph_.end(queue[i]); ++arc)
+      if (here + arc->length < distance && !graph_.wall(arc->to) && reached.emplace(arc->to, here + arc->length).second) queue.push_back(arc->to);
+  }
+  const auto most = static_cast<std::size_t>(std::clamp(1000000 / graph_.point_count(), 12, 48));
+  std::vector<int> some;
+  for (std::size_t k = 0, n = std::min(most, queue.size()); k < n; ++k) some.push_back(queue[k * queue.size() / n]);
+  return some;
+}
+
+// All loops but one are walls.
+void LoopFinder::stand_alone(std::size_t loop) {
+  graph_.forget_taken();
+  for (std::size_t k = 0; k < taken_.size(); ++k)
+    if (k != loop) graph_.take(taken_[k]);
+  graph_.renew_keys();
+}
+
+// The shortest loops through some points, if they are shorter than a bound, shortest first.
+std::vector<Candidate> LoopFinder::around_points(const std::vector<int>& points, double bound, const Progress& progress) {
+  std::vector<Candidate> all(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) {
+    LoopSearch& search = searches_.local();
+    std::vector<int> loop = search.shortest(points[k], bound, progress);
+    if (!loop.empty()) all[k] = {canonical(std::move(loop)), 0};
+    all[k].length = search.length_of(all[k].points);
+  });
+  std::erase_if(all, [](const Candidate& candidate) { return candidate.points.empty(); });
+  sort_candidates(all);
+  return all;
 }
 
 }  // namespace

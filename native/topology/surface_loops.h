@@ -21,10 +21,11 @@ struct SurfaceLoop {
 };
 
 struct LoopOptions {
-  int starts = 3;        // shortest-path trees from which loops are taken, each round; more find shorter loops
-  int tightenings = 12;  // rounds in which a loop is replaced by a shorter one near it
+  // Shortest-path trees from which loops are taken, each round; more find shorter loops. 0: from 3 to 12, more where the surface has few points.
+  int starts = 0;
+  int tightenings = 60;  // points of a loop around which a shorter one is looked for, at most
   // How many times longer than the shortest a loop may be if its cap meets the surface less; 1: the shortest loops are taken.
-  double detour = 1;
+  double detour = 1.5;
   // Longer loops are left out. Infinite: there is a loop for each unit of genus.
   double longest = std::numeric_limits<double>::infinity();
 };
