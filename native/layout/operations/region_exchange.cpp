@@ -26,38 +26,33 @@ struct PlacedRim {
   bool reversed = false;  // faces run along it against the loop's direction
 };
 
-// The places of a closed line's points on a loop all of whose points it has; nothing if it does not run along the loop.
-std::optional<PlacedRim> place_rim(std::vector<int> line, const std::vector<Vec3>& points, const std::vector<Vec3>& loop) {
+// The places of a closed line's points on a loop all of whose points it has; nothing if it does not run along the loop. Points of the loop may
+// coincide: what tells them apart is the order.
+std::optional<PlacedRim> place_rim(const std::vector<int>& line, const std::vector<Vec3>& points, const std::vector<Vec3>& loop) {
+  constexpr double near = 1e-6;  // of the shorter edge
   const std::size_t n = loop.size(), m = line.size();
-  if (m < n) return std::nullopt;
-  std::vector<std::size_t> at(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < m; ++k)
-      if (const double d = (points[line[k]] - loop[i]).squaredNorm(); d < least) least = d, at[i] = k;
+  const auto is_at = [&](int v, std::size_t i) {
     const double edge = std::min((loop[(i + 1) % n] - loop[i]).norm(), (loop[(i + n - 1) % n] - loop[i]).norm());
-    if (std::sqrt(least) > 1e-6 * edge) return std::nullopt;
-  }
-  const auto step = [&](std::size_t i, bool back) { return (back ? at[i] + m - at[(i + 1) % n] : at[(i + 1) % n] + m - at[i]) % m; };
+    return (points[v] - loop[i]).norm() <= near * edge;
+  };
   for (const bool back : {false, true}) {
-    std::size_t around = 0;
-    for (std::size_t i = 0; i < n; ++i) around += step(i, back);
-    if (around != m) continue;
-    PlacedRim rim;
-    rim.reversed = back;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t steps = step(i, back);
-      if (steps == 0) return std::nullopt;
-      const double length = (loop[(i + 1) % n] - loop[i]).norm();
-      for (std::size_t k = 0; k < steps; ++k) {
-        const int v = line[back ? (at[i] + m - k) % m : (at[i] + k) % m];
-        const double t = k == 0 ? 0 : (points[v] - loop[i]).norm() / length;
-        if (t >= 1 || (k > 0 && i + t <= rim.places.back())) return std::nullopt;
+    const auto on_line = [&](std::size_t first, std::size_t k) { return line[back ? (first + m - k % m) % m : (first + k) % m]; };
+    for (std::size_t first = 0; first < m; ++first) {
+      if (!is_at(line[first], 0)) continue;
+      PlacedRim rim;
+      rim.reversed = back;
+      std::size_t i = 0;  // the last point of the loop that was passed
+      bool ordered = true;
+      for (std::size_t k = 0; k < m && ordered; ++k) {
+        const int v = on_line(first, k);
+        if (k > 0 && i + 1 < n && is_at(v, i + 1)) ++i;
+        const double t = is_at(v, i) ? 0 : (points[v] - loop[i]).norm() / (loop[(i + 1) % n] - loop[i]).norm();
+        ordered = t < 1 && (k == 0 || static_cast<double>(i) + t > rim.places.back());
         rim.points.push_back(v);
         rim.places.push_back(static_cast<double>(i) + t);
       }
+      if (ordered && i + 1 == n) return rim;
     }
-    return rim;
   }
   return std::nullopt;
 }

@@ -14,6 +14,7 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kMostGrowth = 24;  // steps in which a rim is made longer, two sides at least each
+constexpr int kMostRings = 4;    // by which a set grows until its boundary does not touch itself
 constexpr int kRoom = 8;         // times as many quads as cover what opens, and so many more, may be laid out anew
 
 std::vector<int> members(const PatchSet& in) {
@@ -79,13 +80,28 @@ class OpeningSearch {
 
   // The one region, with so many rims and no handle, that a set makes once it has been rounded; what it encloses is of it.
   std::optional<PatchRegion> one_region(const PatchSet& in, int rims) const {
-    for (const PatchSet& set : {rounded(in), in}) {
-      std::vector<PatchRegion> regions = regions_around(graph_, set);
-      if (regions.size() != 1 || static_cast<int>(regions[0].patches.size()) > most_) continue;
-      const PatchRegion& region = regions[0];
-      if (region.rim_count() == rims && region.pieces.size() == 1 && region.pieces[0].euler == 2 - rims) return std::move(regions[0]);
-    }
+    for (PatchSet set : {rounded(in), in})
+      for (int ring = 0; ring < kMostRings; ++ring) {
+        fill(set, rims);
+        if (size(set) > most_) break;
+        std::optional<PatchRegion> region = make_region(graph_, members(set));
+        if (region && region->rim_count() == rims && region->pieces.size() == 1 && region->pieces[0].euler == 2 - rims) return region;
+        set = dilated(graph_, set);
+      }
     return std::nullopt;
+  }
+
+  // Takes in what a set encloses: all that is beside it but for the largest parts, one a rim.
+  void fill(PatchSet& in, int rims) const {
+    std::vector<std::vector<int>> outside = components(graph_, in, 0);
+    std::erase_if(outside, [&](const std::vector<int>& part) {
+      return std::none_of(part.begin(), part.end(), [&](int q) {
+        return std::any_of(graph_.neighbours[q].begin(), graph_.neighbours[q].end(), [&](const PatchSide& s) { return s.patch >= 0 && in[s.patch]; });
+      });
+    });
+    std::stable_sort(outside.begin(), outside.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    for (std::size_t k = rims; k < outside.size(); ++k)
+      for (const int q : outside[k]) in[q] = 1;
   }
 
   PatchRegion region_over(const PatchSet& in, int rims) const {

@@ -11,7 +11,24 @@
 namespace hybrid_mesh {
 namespace {
 
-// Connected sets of patches, across sides.
+// The loops of the surface's boundary: per node the number of its own, or -1.
+std::vector<int> loops_of_nodes(const QuadGraph& s) {
+  std::vector<std::vector<int>> next(s.node_count);
+  for (int q = 0; q < s.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (s.neighbours[q][i].patch < 0) next[s.nodes[q][i]].push_back(s.nodes[q][(i + 1) % 4]);
+  std::vector<int> loop(s.node_count, -1);
+  int count = 0;
+  for (int first = 0; first < s.node_count; ++first) {
+    if (next[first].empty() || loop[first] >= 0) continue;
+    for (int n = first; loop[n] < 0; n = next[n].front()) loop[n] = count;
+    ++count;
+  }
+  return loop;
+}
+
+}  // namespace
+
 std::vector<std::vector<int>> components(const QuadGraph& s, const PatchSet& in, char value) {
   std::vector<std::vector<int>> parts;
   std::vector<char> seen(s.patch_count(), 0);
@@ -30,24 +47,6 @@ std::vector<std::vector<int>> components(const QuadGraph& s, const PatchSet& in,
   }
   return parts;
 }
-
-// The loops of the surface's boundary: per node the number of its own, or -1.
-std::vector<int> loops_of_nodes(const QuadGraph& s) {
-  std::vector<std::vector<int>> next(s.node_count);
-  for (int q = 0; q < s.patch_count(); ++q)
-    for (int i = 0; i < 4; ++i)
-      if (s.neighbours[q][i].patch < 0) next[s.nodes[q][i]].push_back(s.nodes[q][(i + 1) % 4]);
-  std::vector<int> loop(s.node_count, -1);
-  int count = 0;
-  for (int first = 0; first < s.node_count; ++first) {
-    if (next[first].empty() || loop[first] >= 0) continue;
-    for (int n = first; loop[n] < 0; n = next[n].front()) loop[n] = count;
-    ++count;
-  }
-  return loop;
-}
-
-}  // namespace
 
 PatchSet dilated(const QuadGraph& s, const PatchSet& in) {
   std::vector<char> node(s.node_count, 0), out = in;

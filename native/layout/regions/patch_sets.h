@@ -9,6 +9,9 @@ namespace hybrid_mesh {
 
 using PatchSet = std::vector<char>;  // per patch of a surface whether it is in the set
 
+// The connected parts, across sides, of a set (value 1) or of what is not in it (value 0); each sorted.
+std::vector<std::vector<int>> components(const QuadGraph& graph, const PatchSet& in, char value);
+
 // Patches that share a node with one of the given, and the given.
 PatchSet dilated(const QuadGraph& graph, const PatchSet& in);
 
