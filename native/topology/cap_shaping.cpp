@@ -11,7 +11,7 @@
 namespace hybrid_mesh {
 namespace {
 
-constexpr int rounds = 10;
+constexpr int rounds = 6;
 constexpr double split_above = 1.4, collapse_below = 0.65;  // by the wanted length
 // The wanted length grows by this part of the distance from the rim.
 constexpr double gradation = 0.2;

@@ -78,10 +78,10 @@ inline TriangleSurface noisy_ball(int n, int handles) {
   std::vector<std::vector<int>> faces_of(s.points.size());
   for (std::size_t f = 0; f < s.faces.size(); ++f)
     for (const int v : s.faces[f]) faces_of[v].push_back(static_cast<int>(f));
-  const auto free = [&](int f) { return !used[s.faces[f][0]] && !used[s.faces[f][1]] && !used[s.faces[f][2]]; };
+  const TriangleSurface flat = s;  // as it was before the handles
+  const auto free = [&](int f) { return !used[flat.faces[f][0]] && !used[flat.faces[f][1]] && !used[flat.faces[f][2]]; };
   const int faces = static_cast<int>(s.faces.size());
   int made = 0;
-  const TriangleSurface flat = s;
   for (int i = 0; i < faces && made < handles; ++i) {
     const int f = static_cast<int>(static_cast<long>(i) * 7919 % faces);
     if (!free(f)) continue;
