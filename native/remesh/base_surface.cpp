@@ -18,7 +18,8 @@ namespace hybrid_mesh {
 
 namespace {
 
-constexpr double kDetour = 1.5;  // times as long a loop may be whose caps do not meet the surface
+constexpr int kMostBoundaries = 24;  // that open late: each takes a layout of its own, and where there are more the base is as good with them
+constexpr double kDetour = 1.5;      // times as long a loop may be whose caps do not meet the surface
 
 }  // namespace
 
@@ -72,7 +73,8 @@ std::vector<LateEvent> find_late_events(const TriangleSurface& repaired, const T
     for (const LateEvent& e : events) others.push_back(e.event);
     for (TopologyEvent& tube : find_tubes(repaired, others, progress)) events.push_back({std::move(tube), -1});
   }
-  for (TopologyEvent& boundary : find_boundary_events(repaired)) events.push_back({std::move(boundary), -1});
+  if (topology.boundary_loops <= kMostBoundaries)
+    for (TopologyEvent& boundary : find_boundary_events(repaired)) events.push_back({std::move(boundary), -1});
   return events;
 }
 

@@ -26,6 +26,7 @@ class LateOpening {
       open_level(last);
       if (closed().empty()) break;
       if (!last) made_.refine();
+      covering_.clear();
     }
     for (const int e : closed()) out_.unopened.push_back({e, reasons_[e]});
     return std::move(out_);
@@ -60,13 +61,15 @@ class LateOpening {
   // Why it does not; nothing if it does.
   std::string try_to_open(int e, int margin) {
     const LevelState state = made_.state();
-    const Found<RegionRepatch> region = find_opening(state, covering_quads(state), e, margin);
+    if (covering_.empty()) covering_ = covering_quads(state);
+    const Found<RegionRepatch> region = find_opening(state, covering_, e, margin);
     if (!region) return region.reason;
     try {
       const Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
       if (!mapped) return mapped.reason;
       out_.regions.push_back(region_of(*region, made_));
       made_.apply(*mapped, kAfterRounds);
+      covering_.clear();  // its quads have other numbers now
       return "";
     } catch (const Error& error) {
       if (error.code() != ErrorCode::InvalidInput) throw;
@@ -78,6 +81,7 @@ class LateOpening {
   const RemeshTask& task_;
   std::int64_t most_quads_;
   std::vector<std::string> reasons_;
+  CoveringQuads covering_;  // of the level as it is; empty: not known
   LateTopology out_;
 };
 

@@ -21,6 +21,7 @@
 namespace hybrid_mesh {
 namespace {
 
+constexpr int kMostSearches = 4;       // a side, on average
 constexpr int kMostReplacements = 30;  // of one curve
 constexpr int kGuidePoints = 24;
 constexpr double kTellingNormal = 0.8;  // length of the sum of unit sides' cross products at a node
@@ -312,7 +313,10 @@ class LayoutTracer {
     };
     std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return distance(i) < distance(j); });
     std::deque<int> pending(order.begin(), order.end());
+    std::int64_t searches = 0;
     while (!pending.empty()) {
+      // Where curves keep taking each other's place there is none for all of them.
+      if (++searches > kMostSearches * static_cast<std::int64_t>(count) + 100) return fail("its sides find no places beside each other");
       progress_(0.1 + 0.6 * (count - static_cast<double>(pending.size())) / count);
       const int k = pending.front();
       pending.pop_front();

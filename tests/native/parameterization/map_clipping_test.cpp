@@ -104,5 +104,30 @@ TEST(MapClipping, GluedMapsTraceTheirSources) {
   EXPECT_EQ(own.source, parts[2].source);
 }
 
+// Neighbours whose maps are clipped at different times, to squares of different levels, have to share the points along their sides.
+TEST(MapClipping, PointsAlongALineDoNotDependOnTheSquaresAskedFor) {
+  for (const int n : {3, 7}) {
+    const PatchMap map = make_map(n, 0.3, n, bent);
+    // The points of a part along u = 1/2 of the map, between two heights.
+    const auto points = [](const PatchMap& part, const DyadicSquare& square, double low, double high) {
+      std::vector<double> out;
+      for (const Vec2& uv : part.uv)
+        if (const double v = square.v + square.width * uv.y(); square.u + square.width * uv.x() == 0.5 && v > low && v < high) out.push_back(v);
+      std::sort(out.begin(), out.end());
+      return out;
+    };
+    const DyadicSquare whole, left = whole.quadrant(0);
+    const std::vector<double> coarse = points(clip_map(map, {left})[0], left, 0, 0.5);
+    for (const DyadicSquare& right : {whole.quadrant(1).quadrant(0), whole.quadrant(1).quadrant(3), whole.quadrant(1).quadrant(0).quadrant(3)}) {
+      const std::vector<double> fine = points(clip_map(map, {right})[0], right, right.v, right.v + right.width);
+      std::vector<double> expected;
+      for (const double v : coarse)
+        if (v > right.v && v < right.v + right.width) expected.push_back(v);
+      ASSERT_EQ(fine.size(), expected.size());
+      for (std::size_t k = 0; k < fine.size(); ++k) EXPECT_NEAR(fine[k], expected[k], 1e-12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_mesh
