@@ -67,7 +67,11 @@ class LateOpening {
     try {
       const Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
       if (!mapped) return mapped.reason;
-      out_.regions.push_back(region_of(*region, made_));
+      Plan::Region planned = region_of(*region, made_);
+      // As many rows as they have become: on another surface they are as many.
+      if (planned.pattern.kind == RegionPattern::Kind::Rows)
+        planned.pattern.height = static_cast<int>(mapped->edit.quads.size() / rim_of(state, *region));
+      out_.regions.push_back(std::move(planned));
       made_.apply(*mapped, kAfterRounds);
       covering_.clear();  // its quads have other numbers now
       return "";
@@ -75,6 +79,11 @@ class LateOpening {
       if (error.code() != ErrorCode::InvalidInput) throw;
       return error.what();  // the quads around have no room for such a layout
     }
+  }
+
+  // Sides of the region's first rim.
+  static std::size_t rim_of(const LevelState& state, const RegionRepatch& region) {
+    return make_region(state.quads, region.patches, region.starts)->rims[1];
   }
 
   Construction& made_;

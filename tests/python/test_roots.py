@@ -23,7 +23,7 @@ CASES = {
     "lumpy, error": (lumpy(), {"error": 6e-3}),
     "bunny, error": (BUNNY, {"error": 2e-4}),
     "bunny, vertices": (BUNNY, {"vertices": 4000}),
-    "bunny, minimal base": (BUNNY, {"vertices": 4000, "base": "min"}),
+    "bunny, minimal base": (BUNNY, {"vertices": 4000, "base": "min", "topology": "base"}),
 }
 
 
