@@ -67,6 +67,10 @@ def steps():
         assert bpy.ops.hybrid_mesh.find_loops("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
     yield from stepper.wait_until(lambda: not jobs.running())
     bpy.context.object.hybrid_mesh_topology.loops[0].level = 2
+    stepper.view()["space_data"].shading.color_type = "MATERIAL"
+    stepper.view()["space_data"].overlay.show_wireframes = False
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.view3d.view_selected()
     yield 2
     stepper.screenshot("panel_topology")
     for cls in panels:

@@ -3,14 +3,19 @@ import bpy
 
 from . import properties
 
+# Widths of the list's columns, as fractions of what is left.
+_KIND, _LENGTH = 0.42, 0.42
+
 
 class HYBRID_MESH_UL_loops(bpy.types.UIList):
     bl_idname = "HYBRID_MESH_UL_loops"
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index):
-        row = layout.row(align=True)
-        row.label(text=item.bl_rna.properties["kind"].enum_items[item.kind].name, icon="GREASEPENCIL" if item.drawn else "CURVE_NCIRCLE")
-        row.label(text=f"{item.length:.1%}")
+        split = layout.split(factor=_KIND)
+        split.label(text=item.bl_rna.properties["kind"].enum_items[item.kind].name, icon="GREASEPENCIL" if item.drawn else "CURVE_NCIRCLE")
+        split = split.split(factor=_LENGTH)
+        split.label(text=f"{item.length:.1%}")
+        row = split.row(align=True)
         level = row.row(align=True)
         level.active = item.use
         level.prop(item, "level", text="", emboss=False)
@@ -36,15 +41,17 @@ class HYBRID_MESH_PT_topology(bpy.types.Panel):
         layout.operator("hybrid_mesh.find_loops", icon="VIEWZOOM")
         if len(properties.loops_of(surface)):
             self._list(layout, surface.hybrid_mesh_topology)
-        row = layout.row(align=True)
-        row.operator("hybrid_mesh.draw_layout", text="Draw Strokes", icon="GREASEPENCIL")
-        row.operator("hybrid_mesh.draw_loop", icon="CURVE_NCIRCLE")
+        column = layout.column(align=True)
+        column.operator("hybrid_mesh.draw_layout", text="Draw Strokes", icon="GREASEPENCIL")
+        column.operator("hybrid_mesh.draw_loop", icon="CURVE_NCIRCLE")
 
     def _list(self, layout, values):
-        row = layout.row(align=True)
-        for heading in ("Around", "Length", "Level, Late"):
-            row.label(text=heading)
+        split = layout.split(factor=_KIND)
+        split.label(text="Around")
+        split = split.split(factor=_LENGTH)
+        split.label(text="Length")
+        split.label(text="Level")
         layout.template_list("HYBRID_MESH_UL_loops", "", values, "loops", values, "index", rows=min(len(values.loops), 6))
         row = layout.row(align=True)
-        row.operator("hybrid_mesh.remove_loop", icon="REMOVE")
+        row.operator("hybrid_mesh.remove_loop", text="Remove", icon="REMOVE")
         row.operator("hybrid_mesh.clear_loops", icon="X")
