@@ -16,6 +16,9 @@ from .features.levels import properties as level_properties
 from .features.remesh import operators as remesh_operators
 from .features.remesh import panel as remesh_panel
 from .features.remesh import properties as remesh_properties
+from .features.topology import operators as topology_operators
+from .features.topology import panel as topology_panel
+from .features.topology import properties as topology_properties
 
 CLASSES = (
     level_properties.HybridMeshObject,
@@ -23,6 +26,8 @@ CLASSES = (
     layout_properties.HybridMeshProblem,
     layout_properties.HybridMeshLayout,
     layout_properties.HybridMeshRegion,
+    topology_properties.HybridMeshLoop,
+    topology_properties.HybridMeshTopology,
     remesh_properties.HybridMeshScene,
     remesh_operators.HYBRID_MESH_OT_remesh,
     remesh_operators.HYBRID_MESH_OT_preset,
@@ -33,14 +38,20 @@ CLASSES = (
     layout_operators.HYBRID_MESH_OT_remesh_layout,
     layout_operators.HYBRID_MESH_OT_remesh_boundary,
     region_operator.HYBRID_MESH_OT_repatch_region,
+    topology_operators.HYBRID_MESH_OT_find_loops,
+    topology_operators.HYBRID_MESH_OT_draw_loop,
+    topology_operators.HYBRID_MESH_OT_remove_loop,
+    topology_operators.HYBRID_MESH_OT_clear_loops,
     layout_panel.HYBRID_MESH_UL_problems,
+    topology_panel.HYBRID_MESH_UL_loops,
     remesh_panel.HYBRID_MESH_PT_remesh,
     remesh_panel.HYBRID_MESH_PT_advanced,
     level_panel.HYBRID_MESH_PT_levels,
     layout_panel.HYBRID_MESH_PT_layout,
+    topology_panel.HYBRID_MESH_PT_topology,
 )
 # Whose property groups what of Blender's has: type, attribute, group.
-PROPERTIES = (*level_properties.PROPERTIES, *layout_properties.PROPERTIES, *remesh_properties.PROPERTIES)
+PROPERTIES = (*level_properties.PROPERTIES, *layout_properties.PROPERTIES, *topology_properties.PROPERTIES, *remesh_properties.PROPERTIES)
 
 _registered = contextlib.ExitStack()  # how to undo it all, the last first
 

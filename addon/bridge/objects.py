@@ -4,6 +4,8 @@
 import contextlib
 
 import bpy
+import mathutils
+import numpy
 
 
 def active(context):
@@ -33,6 +35,12 @@ def find(scene, key):
 def is_local(block):
     """Whether a data-block can be edited: it comes of no library, neither as a link nor as an override of one."""
     return block.library is None and block.override_library is None
+
+
+def diagonal(obj):
+    """The length of the diagonal of an object's bounding box in world space."""
+    corners = numpy.array([obj.matrix_world @ mathutils.Vector(corner) for corner in obj.bound_box])
+    return float(numpy.linalg.norm(numpy.ptp(corners, axis=0)))
 
 
 @contextlib.contextmanager

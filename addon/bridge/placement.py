@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Puts objects where another object stands."""
 
+from . import objects
+
 
 def same_place(source):
     """A function that gives an object the transform and parent of `source`."""
@@ -29,3 +31,37 @@ def same_place(source):
 def _animated(obj):
     data = obj.animation_data
     return data is not None and bool(data.drivers)
+
+
+def go_with(context, obj, surface):
+    """Puts an object where a surface stands. It goes where the surface goes, but is neither turned nor scaled: lines keep their thickness."""
+    obj.parent = surface
+    obj.matrix_parent_inverse = surface.matrix_world.inverted()
+    obj.location = surface.matrix_world.translation
+    context.view_layer.update()
+
+
+def show(context, obj, surface):
+    """Makes an object that belongs to a surface visible, whatever has been hidden."""
+    if not objects.in_view_layer(obj, context.view_layer):
+        collection_beside(context, surface).objects.link(obj)
+    obj.hide_viewport = False
+    obj.hide_set(False)
+    if not obj.visible_get() and obj not in context.scene.collection.objects.values():
+        context.scene.collection.objects.link(obj)  # All collections that it is in are hidden.
+    context.view_layer.update()
+
+
+def collection_beside(context, surface):
+    """Where new objects go: beside the surface, if that is in view and in a collection that takes them."""
+    seen = [layer.collection for layer in _visible(context.view_layer.layer_collection)]
+    beside = [collection for collection in surface.users_collection if collection in seen and objects.is_local(collection)]
+    return beside[0] if beside else context.scene.collection
+
+
+def _visible(layer_collection):
+    if layer_collection.exclude or not layer_collection.is_visible:
+        return
+    yield layer_collection
+    for child in layer_collection.children:
+        yield from _visible(child)

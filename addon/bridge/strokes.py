@@ -160,6 +160,23 @@ def select(obj, frame, layer_name, number):
     return found
 
 
+def remove(obj, frame, chosen):
+    """Removes strokes: (layer name, number) of each, as read() tells them."""
+    chosen = set(chosen)
+    for layer in obj.data.layers:
+        shown = _frame_at(layer, frame)
+        if shown is None:
+            continue
+        numbers = sorted(number for name, number in chosen if name == _layer_name(layer) and number < len(_strokes(shown)))
+        if hasattr(shown, "drawing"):
+            if numbers:
+                shown.drawing.remove_strokes(indices=numbers)
+        else:
+            for stroke in [shown.strokes[number] for number in numbers]:
+                shown.strokes.remove(stroke)
+    obj.data.update_tag()
+
+
 def _layer_name(layer):
     return layer.info if hasattr(layer, "info") else layer.name
 

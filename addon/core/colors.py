@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colours for figures on a mesh."""
 
+import colorsys
+
 import numpy
 
 # Stretch on a logarithmic scale: 1/4, 1/2, 1 (even), 2, 4 and more. Linear RGB.
@@ -17,3 +19,13 @@ def stretch_colors(stretch):
     for channel in range(3):
         colors[:, channel] = numpy.interp(logarithms, _STOPS, _COLORS[:, channel])
     return colors
+
+
+def level_color(level):
+    """Linear RGBA of a level above the base, so that neighbours differ; -1 for one that is not known yet, 0 for the base."""
+    if level < 0:
+        return (0.01, 0.25, 0.9, 1.0)
+    if level == 0:
+        return (0.25, 0.25, 0.25, 1.0)
+    golden = 0.381966
+    return (*colorsys.hsv_to_rgb((0.08 + golden * (level - 1)) % 1, 0.95, 0.85), 1.0)

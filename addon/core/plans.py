@@ -139,6 +139,21 @@ def boundary_plan(nodes=None, cubes=0):
     return to_text({"format": FORMAT, "version": VERSION, "base": {"boundary_nodes": points, "cubes": cubes}})
 
 
+def topology_plan(cuts):
+    """A plan's text that says nothing but which handles and tunnels are closed on the base: the rest of the topology is in the base, all else is searched for.
+
+    cuts: (points, level) of loops, (n, 3) points in world space; level: the first one that may have it open, -1 for the first one with room for it.
+    """
+    events = []
+    for number, (points, level) in enumerate(cuts):
+        event = {"kind": "cut", "loops": [_points(points, f"loop {number} has points")]}
+        if level != -1:
+            _whole("loop's level", level, 1, limits().most_levels)
+            event["level"] = level
+        events.append(event)
+    return to_text({"format": FORMAT, "version": VERSION, "topology": events})
+
+
 def parse(text):
     """A plan's text as a dict; raises PlanError where it is no plan that this version can read."""
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels draw, before and after a remesh, and for a region of a level; the preview's level changes what the view shows."""
+"""The sidebar panels draw, before and after a remesh, for a region of a level, and with a list of loops; the preview's level changes what the view shows."""
 
 import os
 import sys
@@ -11,6 +11,7 @@ import stepper  # noqa: E402
 from hybrid_mesh import jobs, registration  # noqa: E402
 from hybrid_mesh.bridge import levels  # noqa: E402
 from hybrid_mesh.features.layouts import panel as layout_panel  # noqa: E402
+from hybrid_mesh.features.topology import panel as topology_panel  # noqa: E402
 
 
 def steps():
@@ -57,6 +58,21 @@ def steps():
         stepper.view()["area"].tag_redraw()
         yield 1
         stepper.screenshot(f"panel_region_{kind.lower()}")
+    # A torus, and the list of its loops.
+    bpy.utils.unregister_class(layout_panel.HYBRID_MESH_PT_layout)
+    bpy.utils.register_class(topology_panel.HYBRID_MESH_PT_topology)
+    stepper.empty_scene()
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.mesh.primitive_torus_add()
+        assert bpy.ops.hybrid_mesh.find_loops("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield from stepper.wait_until(lambda: not jobs.running())
+    bpy.context.object.hybrid_mesh_topology.loops[0].level = 2
+    stepper.view()["space_data"].shading.color_type = "MATERIAL"
+    stepper.view()["space_data"].overlay.show_wireframes = False
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.view3d.view_selected()
+    yield 2
+    stepper.screenshot("panel_topology")
     for cls in panels:
         if not hasattr(bpy.types, cls.__name__):
             bpy.utils.register_class(cls)

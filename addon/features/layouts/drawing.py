@@ -7,7 +7,7 @@ import bpy
 import numpy
 
 from ... import compat
-from ...bridge import arrays, objects, strokes
+from ...bridge import arrays, objects, placement, strokes
 from ...bridge.names import with_suffix
 from . import properties
 
@@ -54,7 +54,7 @@ def drawn_layout(context, surface):
     elif not objects.is_local(layout) or not objects.is_local(layout.data):
         raise LayoutInputError(f"{layout.name} comes from a library and cannot be drawn in; make it local, or remove it from the scene")
     _add_inks(layout, _DRAWING_INKS)
-    _show(context, layout, surface)
+    placement.show(context, layout, surface)
     frame = context.scene.frame_current
     layers = layout.data.layers
     if layers.active is None or not _can_be_drawn_in(layers.active):
@@ -188,43 +188,14 @@ def _emptied(context, surface, kind, suffix, inks):
     if obj is None:
         obj = _new_object(context, surface, kind, suffix, inks)
     strokes.remove_layers(obj)
-    _show(context, obj, surface)
+    placement.show(context, obj, surface)
     return obj
 
 
 def _new_object(context, surface, kind, suffix, inks):
-    """A Grease Pencil object where the surface stands that goes where the surface goes, but is neither turned nor scaled: strokes keep their thickness."""
-    obj = strokes.new_object(with_suffix(surface.name, suffix), _collection(context, surface), [_ink(key) for key in inks])
+    obj = strokes.new_object(with_suffix(surface.name, suffix), placement.collection_beside(context, surface), [_ink(key) for key in inks])
     obj.hybrid_mesh_layout.kind = kind
     obj.hybrid_mesh_layout.surface = surface
-    obj.parent = surface
-    obj.matrix_parent_inverse = surface.matrix_world.inverted()
-    obj.location = surface.matrix_world.translation
     obj.hide_render = True
-    context.view_layer.update()
+    placement.go_with(context, obj, surface)
     return obj
-
-
-def _show(context, obj, surface):
-    if not objects.in_view_layer(obj, context.view_layer):
-        _collection(context, surface).objects.link(obj)
-    obj.hide_viewport = False
-    obj.hide_set(False)
-    if not obj.visible_get() and obj not in context.scene.collection.objects.values():
-        context.scene.collection.objects.link(obj)  # All collections that it is in are hidden.
-    context.view_layer.update()
-
-
-def _collection(context, surface):
-    """Where new objects go: beside the surface, if that is in view and in a collection that takes them."""
-    seen = [layer.collection for layer in _visible(context.view_layer.layer_collection)]
-    beside = [collection for collection in surface.users_collection if collection in seen and objects.is_local(collection)]
-    return beside[0] if beside else context.scene.collection
-
-
-def _visible(layer_collection):
-    if layer_collection.exclude or not layer_collection.is_visible:
-        return
-    yield layer_collection
-    for child in layer_collection.children:
-        yield from _visible(child)

@@ -13,6 +13,7 @@ from ...core.tasks import Chain, Task
 from ...jobs import NativeJobOperator
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
 from ..remesh.properties import CUBES, core_settings
+from ..topology import properties as topology_properties
 from . import drawing, problems, properties, view
 
 
@@ -142,6 +143,7 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
         layout = objects.find(context.scene, self._drawn.layout)
         if layout is not None:
             drawing.forget_problems(context, surface, layout)
+        topology_properties.say_unused(self, surface)
         if self.hides_source(context):
             drawing.hide(context, surface)
 
@@ -190,6 +192,7 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
     def finish(self, context, results):
         view.to_object_mode(context)
         super().finish(context, results)
+        topology_properties.say_unused(self, objects.find(context.scene, results[0][0].note[0].key))
 
     def hides_source(self, context):
         return context.scene.hybrid_mesh.hide_source

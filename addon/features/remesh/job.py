@@ -6,19 +6,22 @@ import json
 import bpy
 
 from ...bridge import arrays, levels, meshes, objects, placement, transfer
+from ...core import loops
 from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
 from ...jobs import NativeJobOperator
 from ..levels import kept
 from ..levels import properties as hierarchy_properties
+from ..topology import properties as topology_properties
 
 
 def remesh_task(obj, depsgraph, settings, plan=""):
-    """A task that remeshes an object with RemeshSettings, by a plan if there is one. An object that cannot be read is a task that fails."""
+    """A task that remeshes an object with RemeshSettings, by a plan if there is one, else with the object's loops. An object that cannot be read is a task that fails."""
     try:
         source = meshes.read_source(obj, depsgraph, transfer.collect)
-    except (meshes.SourceError, arrays.MatrixError) as error:
+        plan = plan or topology_properties.plan_of(obj, source)
+    except (meshes.SourceError, arrays.MatrixError, loops.LoopError) as error:
         return Task(obj.name, _refusal(error))
     return source_task(obj.name, source, settings, plan)
 
