@@ -11,6 +11,7 @@
 #include "base/found.h"
 #include "surface/polygon_soup.h"
 #include "topology/component_tubes.h"
+#include "topology/loop_kind.h"
 #include "topology/surface_loops.h"
 #include "topology/topological_noise.h"
 
@@ -161,6 +162,13 @@ std::vector<LateEvent> late_events_of(const Plan& plan, const TriangleSurface& r
       late.event.loops[i] = std::move(cycle);
     }
   }
+  std::vector<SurfaceLoop> cuts;
+  for (const LateEvent& late : events)
+    if (late.event.kind == EventKind::Cut) cuts.push_back({late.event.loops[0], cycle_length(repaired, late.event.loops[0]), LoopKind::Handle});
+  tell_kinds(repaired, cuts, progress);
+  auto cut = cuts.begin();
+  for (LateEvent& late : events)
+    if (late.event.kind == EventKind::Cut) late.event.loop_kind = (cut++)->kind;
   return events;
 }
 

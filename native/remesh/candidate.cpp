@@ -58,6 +58,14 @@ Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurfac
   return made;
 }
 
+// Two quads with the same four corners are no faces of a mesh that others can read.
+bool has_twins(const QuadGraph& base) {
+  std::vector<std::array<int, 4>> corners = base.nodes;
+  for (auto& c : corners) std::sort(c.begin(), c.end());
+  std::sort(corners.begin(), corners.end());
+  return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
+}
+
 Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request, WorkingSurfaceInUse& in_use) {
   const RemeshOptions& options = task.options;
   Plan::Origin origin;
@@ -77,6 +85,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   Found<BaseMap> map =
       map_to_base(working.mesh, base, layout_search_options(options, budget, task.base.topology, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
+  if (has_twins(map->levels.front().layout.graph())) throw NoMap("two of the base's quads have the same corners");
   origin.level = map->script.levels.front();
   LateTopology late;
   Candidate c = assemble_candidate(task, working, std::move(*map), origin, [&](Construction& made) {

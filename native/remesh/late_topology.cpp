@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "base/found.h"
 #include "layout/operations/topology_opening.h"
@@ -12,6 +13,7 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr double kQuadsAround = 4;  // of a loop that opens: with fewer the tube is a pinch
+constexpr double kMostRise = 0.3;   // of energy a new quad: above it they are far from square, and a finer level has better ones
 constexpr int kMostMargin = 2;      // rings of quads beside what covers it
 
 class LateOpening {
@@ -48,37 +50,61 @@ class LateOpening {
       task_.progress.check();
       const int level = task_.base.levels[e];
       const double length = first.surface.series->events[e].length / task_.source.placement.diagonal;
-      if (made_.level() < level) continue;
+      if (made_.level() < level) {
+        reasons_[e] = "the mesh does not have the level on which it is to open";
+        continue;
+      }
       if (level < 0 && length < kQuadsAround * width && !last) {
         reasons_[e] = "its quads are too large to go around it";
         continue;
       }
-      // Close to its caps first.
-      for (int margin = 0; margin <= kMostMargin && !made_.surface().open[e]; ++margin) reasons_[e] = try_to_open(e, margin);
+      try_to_open(e, last || level >= 0);
     }
   }
 
-  // Why it does not; nothing if it does.
-  std::string try_to_open(int e, int margin) {
+  // An event that has been laid out and mapped.
+  struct Opening {
+    RegionRepatch region;
+    MappedEdit mapped;
+    double rise() const { return (mapped.energy_after - mapped.energy_before) / static_cast<double>(mapped.edit.quads.size()); }
+  };
+
+  // Opens it where that leaves good quads, close to its caps or with more room around; `anyhow`: also where it does not, in the best way.
+  void try_to_open(int e, bool anyhow) {
     const LevelState state = made_.state();
     if (covering_.empty()) covering_ = covering_quads(state);
+    std::optional<Opening> best;
+    for (int margin = 0; margin <= kMostMargin && !(best && best->rise() <= kMostRise); ++margin) {
+      std::optional<Opening> found = find(state, e, margin);
+      if (found && (!best || found->rise() < best->rise())) best = std::move(found);
+    }
+    if (!best) return;
+    if (best->rise() > kMostRise && !anyhow) {
+      reasons_[e] = "its quads would be distorted";
+      return;
+    }
+    Plan::Region planned = region_of(best->region, made_);
+    // As many rows as they have become: on another surface they are as many.
+    if (planned.pattern.kind == RegionPattern::Kind::Rows)
+      planned.pattern.height = static_cast<int>(best->mapped.edit.quads.size() / rim_of(state, best->region));
+    out_.regions.push_back(std::move(planned));
+    made_.apply(std::move(best->mapped), kAfterRounds);
+    covering_.clear();  // its quads have other numbers now
+  }
+
+  std::optional<Opening> find(const LevelState& state, int e, int margin) {
     const Found<RegionRepatch> region = find_opening(state, covering_, e, margin);
-    if (!region) return region.reason;
+    reasons_[e] = region.reason;
+    if (!region) return std::nullopt;
     try {
-      const Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
-      if (!mapped) return mapped.reason;
-      Plan::Region planned = region_of(*region, made_);
-      // As many rows as they have become: on another surface they are as many.
-      if (planned.pattern.kind == RegionPattern::Kind::Rows)
-        planned.pattern.height = static_cast<int>(mapped->edit.quads.size() / rim_of(state, *region));
-      out_.regions.push_back(std::move(planned));
-      made_.apply(*mapped, kAfterRounds);
-      covering_.clear();  // its quads have other numbers now
-      return "";
+      Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
+      if (mapped) return Opening{*region, std::move(*mapped)};
+      reasons_[e] = mapped.reason;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::InvalidInput) throw;
-      return error.what();  // the quads around have no room for such a layout
+      reasons_[e] = error.what();  // the quads around have no room for such a layout
     }
+    return std::nullopt;
   }
 
   // Sides of the region's first rim.

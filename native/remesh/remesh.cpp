@@ -118,7 +118,7 @@ Candidate searched_remesh(const RemeshOptions& options, const Source& source, st
     else
       for (std::size_t e = 0; e < events.size(); ++e) without.push_back({static_cast<int>(e), best.reason});
     for (auto at = without.rbegin(); at != without.rend(); ++at) {
-      unopened.push_back({std::move(events[at->first].event), std::move(at->second)});
+      unopened.push_back({base.series->events[at->first], std::move(at->second)});
       events.erase(events.begin() + at->first);
     }
   }

@@ -105,6 +105,7 @@ TEST(LateTopology, ThePlanOpensItAgain) {
   const RemeshOptions options = late(3000);
   const RemeshResult first = run(soup, options);
   const RemeshResult again = run(soup, options, first.plan);
+  EXPECT_EQ(again.report["topology"], first.report["topology"]);
   EXPECT_EQ(bytes_of(again), bytes_of(first));
   EXPECT_EQ(again.plan, first.plan);
   // Its loops alone, on another resolution.
@@ -128,6 +129,14 @@ TEST(LateTopology, LevelsThatAPlanGives) {
   EXPECT_EQ(r.report["topology"]["loops"][0]["level"].get<int>(), usual + 1);
   expect_sound(r);
   expect_levels_as_reported(r);
+  // A level that the mesh does not have: then the base has the handle, and the report says so.
+  plan["topology"][0]["level"] = 9;
+  const RemeshResult none = run(soup, options, plan.dump());
+  expect_sound(none);
+  EXPECT_EQ(level_topologies(none).front().genus, 1);
+  EXPECT_EQ(none.report["topology"]["loops"][0]["level"].get<int>(), 0);
+  EXPECT_GT(none.report["topology"]["loops"][0]["length"].get<double>(), 0);
+  EXPECT_FALSE(none.report["topology"]["loops"][0]["reason"].get<std::string>().empty());
   for (const Json& bad :
        {Json{{"kind", "cutting"}, {"loops", topology[0]["loops"]}}, Json{{"kind", "tube"}, {"loops", topology[0]["loops"]}},
         Json{{"kind", "cut"}, {"loops", {{{0, 0, 0}, {1, 0, 0}}}}}, Json{{"kind", "cut"}, {"loops", topology[0]["loops"]}, {"level", 0}}}) {
