@@ -64,8 +64,7 @@ class Coarsening {
       out_.mesh.refine_uniform(repatch.level);
       refusal = out_.mesh.apply(repatch);
     }
-    if (!refusal.empty())
-      throw Error(ErrorCode::Internal, "an operation is refused where it was done before: " + refusal);
+    if (!refusal.empty()) throw Error(ErrorCode::Internal, "an operation is refused where it was done before: " + refusal);
     const std::vector<int>& roots = out_.mesh.operation(out_.mesh.operation_count() - 1).roots;
     for (std::size_t k = 0; k < roots.size(); ++k) {
       out_.node[operation.roots[k]] = roots[k];
