@@ -106,25 +106,33 @@ TEST(MapClipping, GluedMapsTraceTheirSources) {
 
 // Neighbours whose maps are clipped at different times, to squares of different levels, have to share the points along their sides.
 TEST(MapClipping, PointsAlongALineDoNotDependOnTheSquaresAskedFor) {
-  for (const int n : {3, 7}) {
+  for (const int n : {1, 3, 7}) {
     const PatchMap map = make_map(n, 0.3, n, bent);
-    // The points of a part along u = 1/2 of the map, between two heights.
-    const auto points = [](const PatchMap& part, const DyadicSquare& square, double low, double high) {
-      std::vector<double> out;
-      for (const Vec2& uv : part.uv)
-        if (const double v = square.v + square.width * uv.y(); square.u + square.width * uv.x() == 0.5 && v > low && v < high) out.push_back(v);
-      std::sort(out.begin(), out.end());
-      return out;
-    };
-    const DyadicSquare whole, left = whole.quadrant(0);
-    const std::vector<double> coarse = points(clip_map(map, {left})[0], left, 0, 0.5);
-    for (const DyadicSquare& right : {whole.quadrant(1).quadrant(0), whole.quadrant(1).quadrant(3), whole.quadrant(1).quadrant(0).quadrant(3)}) {
-      const std::vector<double> fine = points(clip_map(map, {right})[0], right, right.v, right.v + right.width);
-      std::vector<double> expected;
-      for (const double v : coarse)
-        if (v > right.v && v < right.v + right.width) expected.push_back(v);
-      ASSERT_EQ(fine.size(), expected.size());
-      for (std::size_t k = 0; k < fine.size(); ++k) EXPECT_NEAR(fine[k], expected[k], 1e-12);
+    for (const int axis : {0, 1}) {
+      // The points of a square's map along the line where the axis' coordinate is 1/2, inside the square's side.
+      const auto points = [&](const DyadicSquare& square) {
+        const double low = axis == 0 ? square.v : square.u;
+        const std::vector<PatchMap> parts = clip_map(map, {square});
+        std::vector<double> out;
+        for (const Vec2& uv : parts[0].uv) {
+          const Vec2 p = Vec2(square.u, square.v) + square.width * uv;
+          if (p[axis] == 0.5 && p[1 - axis] > low && p[1 - axis] < low + square.width) out.push_back(p[1 - axis]);
+        }
+        std::sort(out.begin(), out.end());
+        return out;
+      };
+      const DyadicSquare whole;
+      const std::vector<double> coarse = points(whole.quadrant(0));
+      const DyadicSquare across = whole.quadrant(axis == 0 ? 1 : 3);
+      for (const DyadicSquare& fine : {across, across.quadrant(0), across.quadrant(axis == 0 ? 3 : 1), across.quadrant(0).quadrant(0)}) {
+        const double low = axis == 0 ? fine.v : fine.u;
+        std::vector<double> expected;
+        for (const double at : coarse)
+          if (at > low && at < low + fine.width) expected.push_back(at);
+        const std::vector<double> found = points(fine);
+        ASSERT_EQ(found.size(), expected.size()) << n << " " << axis << " " << fine.width;
+        for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-12);
+      }
     }
   }
 }
