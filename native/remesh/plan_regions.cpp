@@ -18,13 +18,15 @@ class RegionRepatcher {
   RegionRepatcher(Construction& made, const Placement& placement, const Progress& progress)
       : made_(made), placement_(placement), progress_(progress), finest_(made.level()) {}
 
-  void operator()(const Plan::Region& region, std::size_t number) {
+  // Whether it was done.
+  bool operator()(const Plan::Region& region, std::size_t number) {
     const std::string place = "the plan's operations[" + std::to_string(number) + "]: ";
     try {
       const auto done = found([&] { repatch(region); });
       // On another surface caps may lie elsewhere: what opens there is found anew.
-      if (!done && !region.opens.empty()) return;
+      if (!done && !region.opens.empty()) return false;
       if (!done) throw Error(ErrorCode::Unsupported, place + "no map to its new quads is found: " + done.reason);
+      return true;
     } catch (LayoutError& e) {
       for (LayoutProblem& p : e.problems)
         for (Vec3& w : p.where) w = placement_.from_unit(w);
@@ -92,12 +94,16 @@ Plan::Region region_of(const RegionRepatch& repatch, const Construction& made) {
   return region;
 }
 
-void repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement, const Progress& progress) {
+std::vector<Plan::Region> repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement,
+                                          const Progress& progress) {
   std::vector<std::size_t> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return regions[i].level < regions[j].level; });
   RegionRepatcher repatch(made, placement, progress);
-  for (const std::size_t k : order) repatch(regions[k], k);
+  std::vector<Plan::Region> done;
+  for (const std::size_t k : order)
+    if (repatch(regions[k], k)) done.push_back(regions[k]);
+  return done;
 }
 
 }  // namespace hybrid_mesh

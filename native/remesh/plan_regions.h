@@ -21,7 +21,8 @@ inline constexpr int kAfterRounds = std::numeric_limits<int>::max();
 
 // Lays out a plan's regions anew, coarse ones first, those of one level in their order. `made`: at the last level that has operations, all with maps;
 // of the surface brought to unit size by `placement`. Throws LayoutError with places in the input's space, Error{InvalidInput} with the place in the
-// plan, Error{Unsupported} if no map is found.
-void repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement, const Progress& progress);
+// plan, Error{Unsupported} if no map is found; a region that opens topology is left out then. Returns those that were done, in order.
+std::vector<Plan::Region> repatch_regions(Construction& made, const std::vector<Plan::Region>& regions, const Placement& placement,
+                                          const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -23,9 +23,8 @@ LayoutScript script_over(LayoutScript::Level base, const Plan& plan) {
 
 Operations operations_of(const RemeshTask& task, const Plan& plan) {
   return [&](Construction& made) {
-    repatch_regions(made, plan.regions, task.source.placement, task.progress.part(0.55, 0.6));
+    std::vector<Plan::Region> regions = repatch_regions(made, plan.regions, task.source.placement, task.progress.part(0.55, 0.6));
     // What the plan has no operation for opens as it would without a plan.
-    std::vector<Plan::Region> regions = plan.regions;
     const LateTopology late = open_late(made, task, plan_budget(task.options, task.source, {}));
     if (!late.unopened.empty())
       throw Error(ErrorCode::Unsupported, "the plan's topology[" + std::to_string(late.unopened.front().first) +
@@ -125,8 +124,13 @@ Candidate planned_candidate(const RemeshTask& task, const Plan& plan) {
   std::optional<Candidate> again = make_again(task, plan);
   Candidate c = again ? std::move(*again) : plan.tower ? grow(task, plan) : lay_out(task, plan);
   // What was asked for is what was done, word for word; a chain of cubes alone has become quads.
-  const std::size_t regions = plan_from_json(c.plan).regions.size();
-  if ((again || !plan.tower) && regions == plan.regions.size()) c.plan = options.plan;
+  const auto by_level = [](const Plan::Region& a, const Plan::Region& b) { return a.level < b.level; };
+  std::vector<Plan::Region> asked = plan.regions;
+  std::stable_sort(asked.begin(), asked.end(), by_level);
+  const std::vector<Plan::Region> done = plan_from_json(c.plan).regions;
+  const bool all = std::equal(asked.begin(), asked.end(), done.begin(), done.end(),
+                              [](const Plan::Region& a, const Plan::Region& b) { return a.level == b.level && a.quads == b.quads; });
+  if ((again || !plan.tower) && all) c.plan = options.plan;
   const Budget budget = plan_budget(options, task.source, {});
   const std::int64_t euler = task.source.topology.euler;
   c.levels = budget.levels;

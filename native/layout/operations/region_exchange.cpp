@@ -103,16 +103,7 @@ class Exchange {
       }
     }
     for (auto& [name, to] : next)
-      while (!to.empty()) {
-        Line line;
-        for (auto at = to.begin(); at != to.end();) {
-          line.push_back(at->first);
-          const int v = at->second;
-          to.erase(at);
-          at = to.find(v);
-        }
-        lines_[name].push_back(std::move(line));
-      }
+      while (!to.empty()) lines_[name].push_back(take_line(to));
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const auto& c = faces_[f].corners;
       for (int i = 0; i < 3; ++i) face_along_[{c[i], c[(i + 1) % 3]}] = static_cast<int>(f);
@@ -181,6 +172,11 @@ class Exchange {
         const int a = point[series_.input.faces[f][i]], b = point[series_.input.faces[f][(i + 1) % 3]];
         if (!face_along_.count({b, a})) to[a] = b;
       }
+    return take_line(to);
+  }
+
+  // Walks one line to its end and takes it out of the steps from point to point.
+  static Line take_line(std::map<int, int>& to) {
     Line line;
     for (auto at = to.begin(); at != to.end();) {
       line.push_back(at->first);
