@@ -26,12 +26,11 @@ Construction::Construction(const QuadGraph& base, double area, SurfaceVersion su
     : mesh_(hierarchy_of(base)), quads_(base), maps_(base.patch_count()), area_(area), surface_(std::move(surface)), nodes_(base.patch_count()) {
   std::iota(nodes_.begin(), nodes_.end(), 0);
   for (int q = 0; q < base.patch_count(); ++q) root_number_.push_back({q, q});
-  edits_.emplace_back();
   begin_level();
 }
 
 Construction::Construction(HybridMesh hierarchy, const std::vector<int>& root_numbers, int level)
-    : mesh_(std::move(hierarchy)), level_(level), quads_(QuadGraph()), edits_(level + 1) {
+    : mesh_(std::move(hierarchy)), level_(level), quads_(QuadGraph()) {
   for (int i = 0; i < mesh_.operation_count(); ++i)
     if (const int finer = mesh_.operation(i).repatch.level; mesh_.operation(i).enabled && finer > level)
       throw Error(ErrorCode::InvalidInput,
@@ -108,7 +107,6 @@ void Construction::refine() {
   nodes_ = std::move(nodes);
   maps_ = quadrisected(state()).maps;
   quads_.quadrisect();
-  edits_.emplace_back();
   begin_level();
 }
 
@@ -117,30 +115,14 @@ void Construction::set_map(int patch, PatchMap map) {
   own_[patch] = 1;
 }
 
-void Construction::apply(std::vector<LayoutScript::Edit> round) {
+void Construction::apply(MappedEdit mapped) {
   if (closed_) throw Error(ErrorCode::Internal, "an edit of a level whose operations have been made");
-  std::vector<LayoutEdit> edits;
-  for (LayoutScript::Edit& of : round) {
-    of.quads.clear();
-    for (const int q : of.edit.patches) of.quads.push_back(to_string(quads_.address(q)));
-    of.start_quads.clear();
-    for (const PatchSide& start : of.edit.starts) of.start_quads.push_back(to_string(quads_.address(start.patch)));
-    edits.push_back(of.edit);
-  }
-  for (std::size_t i = 0; i < edits.size(); ++i) {
-    const LayoutChange made = change(edits[i]);
-    for (std::size_t k = i + 1; k < edits.size(); ++k) edits[k] = renumbered(std::move(edits[k]), made);
-  }
-  edits_.back().insert(edits_.back().end(), std::make_move_iterator(round.begin()), std::make_move_iterator(round.end()));
-}
-
-void Construction::apply(MappedEdit mapped, int round) {
-  apply({{std::move(mapped.edit), round, false, 0, {}, {}, {}}});
+  change(mapped.edit);
   for (auto& [patch, map] : mapped.maps) set_map(patch, std::move(map));
   for (const int e : mapped.opens) surface_.open[e] = true;
 }
 
-LayoutChange Construction::change(const LayoutEdit& edit) {
+void Construction::change(const LayoutEdit& edit) {
   const std::vector<int> before = patches_;
   const int first_new = static_cast<int>(group_.size());
   int group = -1;
@@ -176,7 +158,6 @@ LayoutChange Construction::change(const LayoutEdit& edit) {
   for (std::size_t n = 0; n < change.node.size(); ++n)
     if (change.node[n] >= 0) vertices[change.node[n]] = n < vertices_.size() ? vertices_[n] : Vertex{VertexId(), fresh_++};
   vertices_ = std::move(vertices);
-  return change;
 }
 
 int Construction::find(int a) {

@@ -7,13 +7,11 @@
 #include "construction/addressed_graph.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "layout/level_state.h"
-#include "layout/search/layout_script.h"
 
 namespace hybrid_mesh {
 
 // A hierarchy while it is made or edited, and the state of the level that operations act on, as one thing: an edit is applied once, to the state at
-// once and to the hierarchy with the level's other edits. Edits of one level that share quads are one irregular operation. What was done is kept:
-// addresses, reports and plans are read off it.
+// once and to the hierarchy with the level's other edits. Edits of one level that share quads are one irregular operation.
 class Construction {
  public:
   // `area`: of the surface that the quads are mapped to, which is of unit size; `surface`: its version.
@@ -28,10 +26,7 @@ class Construction {
   LevelState state() const { return {quads_.graph(), maps_, area_, placement_, surface_}; }
   const SurfaceVersion& surface() const { return surface_; }
 
-  // Edits of disjoint regions, all named by the quads before any of them; their quads' maps are left to set_map(). Throws Error{Internal} where there
-  // are no such quads.
-  void apply(std::vector<LayoutScript::Edit> round);
-  void apply(MappedEdit mapped, int round);
+  void apply(MappedEdit mapped);
   // Gives a quad of the level a map of its own.
   void set_map(int patch, PatchMap map);
 
@@ -44,7 +39,6 @@ class Construction {
   // Once closed:
   HybridMesh& hierarchy() { return mesh_; }
   std::vector<int> root_numbers() const;  // per node: the number of a root quad in addresses, -1: no root
-  const std::vector<std::vector<LayoutScript::Edit>>& edits() const { return edits_; }  // per level, in order, with addresses
 
  private:
   struct Group {
@@ -57,7 +51,7 @@ class Construction {
   };
 
   void begin_level();
-  LayoutChange change(const LayoutEdit& edit);
+  void change(const LayoutEdit& edit);
   void insert(const Group& group, bool towers, std::vector<int>& nodes);
   int find(int a);
 
@@ -68,7 +62,6 @@ class Construction {
   double area_ = 0;            // see LevelState
   Placement placement_;
   SurfaceVersion surface_;
-  std::vector<std::vector<LayoutScript::Edit>> edits_;
   std::vector<std::pair<int, int>> root_number_;  // node, number
   bool closed_ = false;
   // Of the level:

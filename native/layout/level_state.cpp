@@ -12,17 +12,43 @@ LevelState quadrisected(const LevelState& state) {
   return finer;
 }
 
-std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads) {
-  std::map<const PatchMap*, std::vector<std::size_t>> of_map;  // places in `quads`
-  for (std::size_t k = 0; k < quads.size(); ++k) of_map[state.maps[quads[k]].map.get()].push_back(k);
+namespace {
+
+// `clip` cuts the parts over some squares out of a map.
+template <class Clip>
+std::vector<PatchMap> cut_out(const LevelState& state, const std::vector<int>& quads, const Clip& clip) {
+  // By the quads' order: what comes of it does not depend on where the maps are in memory.
+  std::map<const PatchMap*, std::size_t> number;
+  std::vector<std::vector<std::size_t>> places;  // in `quads`, a list for each map
+  for (std::size_t k = 0; k < quads.size(); ++k) {
+    const auto [at, fresh] = number.insert({state.maps[quads[k]].map.get(), places.size()});
+    if (fresh) places.emplace_back();
+    places[at->second].push_back(k);
+  }
   std::vector<PatchMap> out(quads.size());
-  for (const auto& [map, places] : of_map) {
+  for (const std::vector<std::size_t>& of_map : places) {
     std::vector<DyadicSquare> squares;
-    for (const std::size_t k : places) squares.push_back(state.maps[quads[k]].square);
-    std::vector<PatchMap> parts = clip_map(*map, squares);
-    for (std::size_t i = 0; i < places.size(); ++i) out[places[i]] = std::move(parts[i]);
+    for (const std::size_t k : of_map) squares.push_back(state.maps[quads[k]].square);
+    std::vector<PatchMap> parts = clip(*state.maps[quads[of_map[0]]].map, squares);
+    for (std::size_t i = 0; i < of_map.size(); ++i) out[of_map[i]] = std::move(parts[i]);
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads) { return cut_out(state, quads, clip_map); }
+
+std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads, RootTriangles& roots) {
+  return cut_out(state, quads, [&](const PatchMap& map, const std::vector<DyadicSquare>& squares) {
+    std::vector<PatchMap> parts = clip_by_triangles(map, squares);
+    const int first = static_cast<int>(roots.source_face.size());
+    for (PatchMap& part : parts)
+      for (int& f : part.source_face) f += first;
+    roots.source_face.insert(roots.source_face.end(), map.source_face.begin(), map.source_face.end());
+    roots.source.insert(roots.source.end(), map.source.begin(), map.source.end());
+    return parts;
+  });
 }
 
 QuadGraph part_of(const QuadGraph& graph, const std::vector<int>& part) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "layout/layout_edit.h"
+#include "layout/layout_outline.h"
 #include "parameterization/map_clipping.h"
 #include "surface/placement.h"
 #include "topology/surface_series.h"
@@ -40,6 +41,14 @@ LevelState quadrisected(const LevelState& state);
 // The maps of some quads. Throws NoMap where rounding would fold one.
 std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads);
 
+// Triangles of maps out of which others have been cut, and where they lie on the surface: as PatchMap has it.
+struct RootTriangles {
+  std::vector<int> source_face;
+  std::vector<std::array<float, 9>> source;
+};
+// The maps of some quads by the triangles of those out of which they are cut: what lies in one of these was one triangle before.
+std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads, RootTriangles& roots);
+
 // The quads of `part` alone, numbered in that order; nodes where the part merely touches itself are one.
 QuadGraph part_of(const QuadGraph& graph, const std::vector<int>& part);
 
@@ -47,6 +56,7 @@ QuadGraph part_of(const QuadGraph& graph, const std::vector<int>& part);
 struct MappedEdit {
   LayoutEdit edit;
   std::vector<int> opens;                      // events of the surface's series that open with it
+  LayoutOutline outline;                       // of even quads: where they lie, the region's corners first among the nodes
   std::vector<std::pair<int, PatchMap>> maps;  // of the new quads, and of those around that were smoothed with them: by their numbers after the edit
   double energy_before = 0, energy_after = 0;  // of the maps of the region and of what was smoothed around it, beyond an isometry's, in quads
 };

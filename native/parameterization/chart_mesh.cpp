@@ -130,30 +130,6 @@ ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const s
     }
 }
 
-void ChartMesh::quadrisect() {
-  const int faces = static_cast<int>(chart.size());
-  // Of each face the quadrant of its square that holds it best: its chart's origin in the doubled square.
-  std::vector<Complex> origin(faces, Complex(0, 0));
-  for (int f = 0; f < faces; ++f) {
-    if (!mesh.alive[f]) continue;
-    const Complex middle = (at(3 * f) + at(3 * f + 1) + at(3 * f + 2)) / 3.0;
-    const int right = middle.real() >= 0.5, upper = middle.imag() >= 0.5;
-    origin[f] = Complex(right, upper);
-    chart[f] = 4 * chart[f] + (upper ? 3 - right : right);
-  }
-  const auto doubled = [](const Transition& t, const Complex& shift) {
-    return Transition{t.turns, 2 * t.x + static_cast<std::int32_t>(shift.real()), 2 * t.y + static_cast<std::int32_t>(shift.imag())};
-  };
-  for (int h = 0; h < 3 * faces; ++h) {
-    if (!mesh.alive[h / 3]) continue;
-    const int across = mesh.opposite[h] < 0 ? h / 3 : mesh.opposite[h] / 3;
-    gluing[h] = doubled(gluing[h], gluing[h].rotate(origin[h / 3]) - origin[across]);
-    corner[h] = doubled(corner[h], -origin[h / 3]);
-  }
-  for (Complex& p : uv) p *= 2;
-  scale *= 2;
-}
-
 std::vector<int> ChartMesh::movable_vertices() const {
   std::vector<int> vertices;
   for (int v = 0; v < static_cast<int>(points.size()); ++v)

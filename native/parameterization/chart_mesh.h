@@ -58,9 +58,6 @@ class ChartMesh {
   ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
             const std::vector<int>& vertex_of);
 
-  // The charts of the patches' quadrants, in the order of quadrisected(): all coordinates are doubled.
-  void quadrisect();
-
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
   std::vector<int> movable_vertices() const;  // that are alive

@@ -38,15 +38,22 @@ GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, con
   stars.relax_squeezed(0.02, 30, progress.part(0.1, 0.2));
   report.energy_before = mean_energy(charts, stars);
   CollapseHierarchy hierarchy(charts, options, insertions.original(), report);
-  hierarchy.collapse(static_cast<int>(std::min(options.vertices_a_quad * surface.patch_count(), 2e9)));
-  progress(0.3);
-  report.coarse_vertices = charts.mesh.vertex_count;
   const auto descend = [&](int steps, const Progress& part) {
     NewtonOptions newton;
     newton.steps = steps;
     const int taken = newton_descent(charts, density, newton, part);
     if (taken > 0) report.newton_steps = taken;
   };
+  // A map that has just been made is too distorted to be collapsed far: what is left would be thin triangles.
+  constexpr double first = 4;  // times the coarse mesh's vertices
+  const double coarse = options.vertices_a_quad * surface.patch_count();
+  if (first * coarse < charts.mesh.vertex_count) {
+    hierarchy.collapse(static_cast<int>(first * coarse));
+    descend(options.newton_steps / 2, progress.part(0.2, 0.25));
+  }
+  hierarchy.collapse(static_cast<int>(std::min(coarse, 2e9)));
+  progress(0.3);
+  report.coarse_vertices = charts.mesh.vertex_count;
   descend(options.newton_steps, progress.part(0.3, 0.45));
   std::vector<int> corners = options.corners_move ? corner_motion.all() : std::vector<int>();
   for (int round = 0; round < options.cone_rounds; ++round) {

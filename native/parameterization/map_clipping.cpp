@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -14,14 +15,16 @@
 namespace hybrid_mesh {
 namespace {
 
-constexpr double kTie = 1e-9;    // of an area: what rounding must not decide
+constexpr double kTie = 1e-9;  // of an area: what rounding must not decide
+constexpr std::array<float, 9> kCorners{1, 0, 0, 0, 1, 0, 0, 0, 1};
 constexpr double kSnap = 1e-13;  // of the map's unit square: what rounding moves a crossing by, and some
 
 // A map's triangles while they are cut along lines u = c and v = c. Which side of a line a vertex is on is exact, since c is a number that a double
 // holds; what is cut gets a vertex exactly on the line, the same for both triangles of an edge.
 class MapCutting {
  public:
-  explicit MapCutting(const PatchMap& map) : map_(map) {}
+  // `by_triangles`: sources are triangles of the map, and not those of them.
+  MapCutting(const PatchMap& map, bool by_triangles) : map_(map), by_triangles_(by_triangles) {}
 
   // Only triangles that overlap one of the squares are kept.
   void take(const std::vector<DyadicSquare>& squares) {
@@ -100,7 +103,7 @@ class MapCutting {
       if (!inside) continue;
       std::array<int, 3> corners;
       std::array<float, 9> source;
-      const std::array<float, 9>& whole = map_.source[t.source];
+      const std::array<float, 9>& whole = by_triangles_ ? kCorners : map_.source[t.source];
       for (int i = 0; i < 3; ++i) {
         const auto [at, fresh] = index.insert({t.corners[i], static_cast<int>(out.uv.size())});
         corners[i] = at->second;
@@ -113,7 +116,7 @@ class MapCutting {
           source[3 * i + k] = static_cast<float>(t.weights[i][0] * whole[k] + t.weights[i][1] * whole[3 + k] + t.weights[i][2] * whole[6 + k]);
       }
       out.triangles.push_back(corners);
-      out.source_face.push_back(map_.source_face[t.source]);
+      out.source_face.push_back(by_triangles_ ? t.source : map_.source_face[t.source]);
       out.source.push_back(source);
     }
     if (const char* defect = find_map_defect(out); *defect) throw NoMap(std::string("a part of a map: ") + defect);
@@ -163,6 +166,7 @@ class MapCutting {
   }
 
   const PatchMap& map_;
+  bool by_triangles_;
   const std::set<double>* across_ = nullptr;
   std::vector<Triangle> triangles_;
   std::vector<Vec2> uv_;
@@ -176,12 +180,9 @@ double coarsest_width(double c) {
   return width;
 }
 
-}  // namespace
-
-std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSquare>& squares) {
-  if (squares.size() == 1 && squares[0].is_whole()) return {map};
+std::vector<PatchMap> clip(const PatchMap& map, const std::vector<DyadicSquare>& squares, bool by_triangles) {
   if (squares.empty()) return {};
-  MapCutting cutting(map);
+  MapCutting cutting(map, by_triangles);
   cutting.take(squares);
   // Coarse lines first, those of the squares' ancestors too: then the points along a line are the same whichever finer squares are asked for, and
   // maps that were clipped at different times still share them. A line that was cut before leaves diagonals, which later ones cross.
@@ -201,6 +202,22 @@ std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSqua
   std::vector<PatchMap> parts;
   for (const DyadicSquare& s : squares) parts.push_back(cutting.part(s));
   return parts;
+}
+
+}  // namespace
+
+std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSquare>& squares) {
+  if (squares.size() == 1 && squares[0].is_whole()) return {map};
+  return clip(map, squares, false);
+}
+
+std::vector<PatchMap> clip_by_triangles(const PatchMap& map, const std::vector<DyadicSquare>& squares) {
+  if (squares.size() != 1 || !squares[0].is_whole()) return clip(map, squares, true);
+  PatchMap whole = map;
+  whole.source.assign(whole.triangles.size(), kCorners);
+  whole.source_face.resize(whole.triangles.size());
+  std::iota(whole.source_face.begin(), whole.source_face.end(), 0);
+  return {std::move(whole)};
 }
 
 }  // namespace hybrid_mesh

@@ -19,5 +19,7 @@ struct DyadicSquare {
 // The parts of a map over disjoint squares, each as a map from the unit square. Squares that share a side share the points on it. Triangles are cut
 // along the squares' sides, all that lies between is left as it is. Throws NoMap if rounding would fold a piece.
 std::vector<PatchMap> clip_map(const PatchMap& map, const std::vector<DyadicSquare>& squares);
+// The same with the map's own triangles as the pieces' sources.
+std::vector<PatchMap> clip_by_triangles(const PatchMap& map, const std::vector<DyadicSquare>& squares);
 
 }  // namespace hybrid_mesh

@@ -149,20 +149,32 @@ GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& gr
   return out;
 }
 
-void GluedMaps::trace(PatchMap& map) const {
-  for (std::size_t t = 0; t < map.triangles.size(); ++t) {
-    const int face = map.source_face[t];
-    const std::array<float, 9>& corner = source[face];
+namespace {
+
+// Makes sources given in some faces name what these lie on.
+void compose(std::vector<int>& source_face, std::vector<std::array<float, 9>>& source, const std::vector<int>& on_face,
+             const std::vector<std::array<float, 9>>& on) {
+  for (std::size_t t = 0; t < source_face.size(); ++t) {
+    const int face = source_face[t];
+    const std::array<float, 9>& corner = on[face];
     std::array<float, 9> traced{};
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < 3; ++i) {
         double w = 0;
-        for (int k = 0; k < 3; ++k) w += static_cast<double>(map.source[t][3 * c + k]) * corner[3 * k + i];
+        for (int k = 0; k < 3; ++k) w += static_cast<double>(source[t][3 * c + k]) * corner[3 * k + i];
         traced[3 * c + i] = static_cast<float>(w);
       }
-    map.source[t] = traced;
-    map.source_face[t] = source_face[face];
+    source[t] = traced;
+    source_face[t] = on_face[face];
   }
+}
+
+}  // namespace
+
+void GluedMaps::trace(PatchMap& map) const { compose(map.source_face, map.source, source_face, source); }
+
+void GluedMaps::trace_on(const std::vector<int>& between_face, const std::vector<std::array<float, 9>>& between) {
+  compose(source_face, source, between_face, between);
 }
 
 }  // namespace hybrid_mesh

@@ -29,6 +29,8 @@ struct GluedMaps {
 
   // Makes a map's sources, given in `faces`, name faces of the surface that the glued maps named.
   void trace(PatchMap& map) const;
+  // Where the maps named faces of something between, makes them name what these lie on; per face of that as PatchMap has it.
+  void trace_on(const std::vector<int>& between_face, const std::vector<std::array<float, 9>>& between);
 };
 GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph);
 

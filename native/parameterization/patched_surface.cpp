@@ -42,13 +42,6 @@ void split_inner_edge(TriangleSurface& mesh, std::vector<PointSource>& source, i
   }
 }
 
-PatchedSurface quadrisected(PatchedSurface surface) {
-  static_cast<QuadGraph&>(surface) = quadrisected(surface.graph());
-  surface.patch.clear();
-  surface.sides.clear();
-  return surface;
-}
-
 PatchedPart part_of(const PatchedSurface& surface, const std::vector<int>& patches) {
   PatchedPart part;
   std::vector<int> local_patch(surface.patch_count(), -1);

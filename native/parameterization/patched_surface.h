@@ -44,10 +44,6 @@ struct PatchedSurface : QuadGraph {
   const QuadGraph& graph() const { return *this; }
 };
 
-// The surface with the graph of its patches' quadrants. Points and faces are left as they are, `patch` and `sides` empty: it is cut anew where a map
-// says (ChartMesh::quadrisect(), extract_patch_maps()).
-PatchedSurface quadrisected(PatchedSurface surface);
-
 // A part of a patched surface made of some of its patches. Patches are numbered in the order given; points and nodes where the part merely touches
 // itself are doubled.
 struct PatchedPart {

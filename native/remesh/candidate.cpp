@@ -33,27 +33,15 @@ int least_quads(const TopologySummary& topology) {
   return static_cast<int>(std::max(6.0 * topology.components, 12.0 * topology.genus) + 4.0 * topology.boundary_loops);
 }
 
-// Gives all quads of the construction's level their maps.
-void set_maps(Construction& made, LevelMap& level, const RemeshTask& task, const WorkingSurface& working, const Progress& progress) {
-  std::vector<PatchMap> maps = extract_patch_maps(level.charts, level.layout, working.mesh.faces, progress);
-  for (int q = 0; q < level.layout.patch_count(); ++q) {
+// The construction of a base, whose quads get their maps.
+Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
+  Construction made(map.layout.graph(), area_of(working.mesh), task.base.version());
+  std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, working.mesh.faces, task.progress.part(0.5, 0.55));
+  for (int q = 0; q < map.layout.patch_count(); ++q) {
     const char* defect = find_map_defect(maps[q]);
-    if (*defect) throw NoMap("the map of quad " + std::to_string(q) + " of level " + std::to_string(level.level) + ": " + defect);
+    if (*defect) throw NoMap("the map of the base's quad " + std::to_string(q) + ": " + defect);
     working.to_repaired(maps[q], task.base.mesh);
     made.set_map(q, std::move(maps[q]));
-  }
-}
-
-// The construction of a base and the levels that were edited, at the last of these.
-Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
-  Construction made(map.levels.front().layout.graph(), area_of(working.mesh), task.base.version());
-  const auto parts = static_cast<double>(map.levels.size());
-  for (std::size_t i = 0; i < map.levels.size(); ++i) {
-    while (made.level() < map.levels[i].level) {
-      made.refine();
-      for (std::vector<LayoutScript::Edit>& round : rounds_of(map.script.levels[made.level()])) made.apply(std::move(round));
-    }
-    set_maps(made, map.levels[i], task, working, task.progress.part(0.5 + 0.05 * i / parts, 0.5 + 0.05 * (i + 1) / parts));
   }
   return made;
 }
@@ -82,16 +70,15 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
   const BaseDomain base = make_base(task, origin, in_use);
   const WorkingSurface& working = in_use.of_size(task, origin.faces);
-  Found<BaseMap> map =
-      map_to_base(working.mesh, base, layout_search_options(options, budget, task.base.topology, base, request), task.progress.part(0.15, 0.5));
+  Found<BaseMap> map = map_to_base(working.mesh, base, layout_search_options(options, budget, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
-  if (has_twins(map->levels.front().layout.graph())) throw NoMap("two of the base's quads have the same corners");
-  origin.level = map->script.levels.front();
+  if (has_twins(map->layout.graph())) throw NoMap("two of the base's quads have the same corners");
+  origin.script = map->script;
   LateTopology late;
   Candidate c = assemble_candidate(task, working, std::move(*map), origin, [&](Construction& made) {
+    std::vector<Plan::Region> regions = grow_skin(made, task, skin_options(task, budget, base, request));
     late = open_late(made, task, budget);
-    std::vector<Plan::Region> regions = grow_skin(made, task, budget, base);
-    regions.insert(regions.begin(), late.regions.begin(), late.regions.end());
+    regions.insert(regions.end(), late.regions.begin(), late.regions.end());
     return regions;
   });
   c.unopened = std::move(late.unopened);
@@ -159,7 +146,6 @@ std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool anothe
     constexpr std::array<int, kRequests> factor{1, 1, 1, 1, 2, 4, 16, 64};
     r.size_factor = factor[k];
     r.base_edits = k == 2 || k == 3;
-    if (k == 3) r.vertices_a_quad = 60;
     r.operations = k < 7;
   }
   return requests;
@@ -237,7 +223,7 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
 Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
                              const Operations& operations) {
   const Placement& placement = task.source.placement;
-  const QuadGraph base = map.levels.front().layout.graph();
+  const QuadGraph base = map.layout.graph();
   task.watch.start("extract");
   Construction made = construct(map, task, working);
   task.watch.start("map");
@@ -258,19 +244,13 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
   Plan plan;
   plan.base = outline_of_base(hierarchy, base);
   plan.origin = origin;
-  for (std::size_t level = 1; level < map.script.levels.size(); ++level) {
-    LayoutScript::Level& of = plan.levels.emplace_back(map.script.levels[level]);
-    for (std::size_t k = 0; k < of.edits.size(); ++k) of.edits[k] = made.edits()[level][k];  // with their addresses
-  }
   plan.regions = regions;
   plan.topology = planned_events(task.base, task.source.repaired);
   for (const Plan::Region& region : regions)
     for (const int e : region.opens) plan.topology[e].level = region.level;
   c.opened_on.assign(plan.topology.size(), -1);
   for (std::size_t e = 0; e < plan.topology.size(); ++e) c.opened_on[e] = plan.topology[e].level;
-  const auto from_unit = [&](const Vec3& p) { return placement.from_unit(p); };
-  move_outline(plan.base, from_unit);
-  move_outlines(plan.levels, from_unit);
+  move_outline(plan.base, [&](const Vec3& p) { return placement.from_unit(p); });
   c.plan = to_json(plan);
   c.hierarchy = std::move(hierarchy);
   if (task.options.refinement == Refinement::Adaptive) coarsen(c);

@@ -41,11 +41,10 @@ struct Candidate {
 
 // A search for a base domain and a map to it. What is tried, one after the other, for as long as no map is found.
 struct BaseRequest {
-  std::uint64_t seed = 0;      // decides near-ties
-  int size_factor = 1;         // of a minimal base: more quads where a map to fewer cannot be had
-  bool base_edits = true;      // a minimal base's own quads are improved as well: slow where there are few, but a map to them holds more often
-  bool operations = true;      // with a minimal base: irregular operations on a finer level
-  double vertices_a_quad = 0;  // of the surface on which these are found; 0: as is usual
+  std::uint64_t seed = 0;  // decides near-ties
+  int size_factor = 1;     // of a minimal base: more quads where a map to fewer cannot be had
+  bool base_edits = true;  // a minimal base's own quads are improved as well: slow where there are few, but a map to them holds more often
+  bool operations = true;  // with a minimal base: irregular operations on a finer level
 };
 // Eight of them. `another`: others than those of the first time.
 std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool another);

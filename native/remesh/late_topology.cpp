@@ -88,7 +88,7 @@ class LateOpening {
     if (planned.pattern.kind == RegionPattern::Kind::Rows)
       planned.pattern.height = static_cast<int>(best->mapped.edit.quads.size() / rim_of(state, best->region));
     out_.regions.push_back(std::move(planned));
-    made_.apply(std::move(best->mapped), kAfterRounds);
+    made_.apply(std::move(best->mapped));
     covering_.clear();  // its quads have other numbers now
   }
 

@@ -10,11 +10,10 @@ namespace hybrid_mesh {
 // Quads: one ring around a feature that sticks out, where that costs next to nothing of the budget.
 constexpr double kRoomForARing = 4;
 
-// Energy of a quad that is stretched so many times in one direction, beyond an isometry's.
-double excess_of_stretch(double stretch);
+// Whether a minimal base is to have irregular operations on a finer level.
+bool has_finer_operations(const RemeshOptions& options, const BaseDomain& base, const BaseRequest& request);
 
-// How the layout is searched: on the base alone, or, with a minimal one, on finer levels too, where skin is grown.
-LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const TopologySummary& topology, const BaseDomain& base,
-                                          const BaseRequest& request);
+// How the base's layout is searched.
+LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const BaseDomain& base, const BaseRequest& request);
 
 }  // namespace hybrid_mesh

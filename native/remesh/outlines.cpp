@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/outlines.h"
 
+#include <array>
 #include <utility>
 
 namespace hybrid_mesh {
@@ -24,18 +25,6 @@ LayoutOutline outline_of_base(const HybridMesh& hierarchy, const QuadGraph& base
       for (int k = 0; k <= parts; ++k) outline.sides[q][i].push_back(at(static_cast<double>(k) / parts));
     }
   return outline;
-}
-
-void move_outline(LayoutOutline& outline, const PointMove& move) {
-  for (Vec3& p : outline.nodes) p = move(p);
-  for (auto& sides : outline.sides)
-    for (auto& side : sides)
-      for (Vec3& p : side) p = move(p);
-}
-
-void move_outlines(std::vector<LayoutScript::Level>& levels, const PointMove& move) {
-  for (LayoutScript::Level& level : levels)
-    for (LayoutScript::Edit& edit : level.edits) move_outline(edit.outline, move);
 }
 
 }  // namespace hybrid_mesh

@@ -8,7 +8,7 @@
 
 #include "layout/base/base_domain.h"
 #include "layout/drawn/boundary_tower.h"
-#include "layout/drawn/layout_transfer.h"
+#include "layout/layout_outline.h"
 #include "layout/operations/region_repatch.h"
 #include "layout/search/layout_script.h"
 #include "remesh/working_surface.h"
@@ -28,14 +28,14 @@ struct Plan {
     std::string surface;     // its fingerprint()
     std::int64_t faces = 0;  // see make_working_surface()
     BaseDomainOptions base;
-    LayoutScript::Level level;           // the base level's edits
+    LayoutScript script;                 // the base's edits
     std::optional<BoundaryTower> tower;  // instead of all but the surface: in the input's space
   };
-  // Quads of one level, laid out anew after all of that level's other operations; see RegionRepatch.
+  // Quads of one level, laid out anew; see RegionRepatch.
   struct Region {
     int level = 0;
     std::vector<std::string> quads;  // addresses
-    RegionPattern pattern;           // its strokes in the input's space
+    RegionPattern pattern;           // in the input's space
     // The addresses of quads, and their sides that begin at the first corners of the region's first rims; see make_region(). Empty: any.
     std::vector<std::pair<std::string, int>> starts;
     std::vector<int> opens;  // events of the plan's topology that open there
@@ -51,9 +51,8 @@ struct Plan {
   // Nothing but the topology is given: the base is searched.
   bool has_base() const { return tower || !base.quads.empty(); }
   LayoutOutline base;                  // in the input's space
-  std::optional<BoundaryTower> tower;  // instead of the base, and then there are no levels: in the input's space
+  std::optional<BoundaryTower> tower;  // instead of the base: in the input's space
   std::optional<Origin> origin;
-  std::vector<LayoutScript::Level> levels;  // above the base, as far as there are operations
   std::vector<Region> regions;
 };
 

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "base/limits.h"
-#include "construction/addressed_graph.h"
-#include "layout/regions/region_pattern.h"
 #include "remesh/plan.h"
 #include "remesh/plan_format.h"
 
@@ -15,8 +13,6 @@ namespace hybrid_mesh {
 namespace {
 
 using namespace plan_format;
-
-constexpr std::int64_t kMostRounds = 1000000;
 
 void curves_from_json(const PlanEntry& entry, LayoutOutline& outline) {
   outline.sides.resize(outline.quads.size());
@@ -89,62 +85,6 @@ std::vector<PlanEntry> starts_of(const PlanEntry& entry) {
   return starts;
 }
 
-LayoutEdit layout_edit_from_json(const PlanEntry& entry, const AddressedGraph& layout) {
-  const auto quad = [&](const PlanEntry& e) {
-    const int q = layout.find(e.text());
-    if (q < 0) e.refuse("names the quad " + e.text() + ", which that level does not have");
-    return q;
-  };
-  std::vector<int> patches;
-  for (const PlanEntry& e : entry.at("quads").list()) patches.push_back(quad(e));
-  std::vector<PatchSide> starts;
-  const auto inside = [&](int q) { return std::find(patches.begin(), patches.end(), q) != patches.end(); };
-  for (const PlanEntry& e : starts_of(entry)) {
-    const std::vector<PlanEntry> s = e.list(2);
-    const PatchSide start{quad(s[0]), s[1].index(4)};
-    if (!inside(start.patch) || inside(layout.graph().neighbours[start.patch][start.side].patch)) e.refuse("is no side of the quads' boundary");
-    starts.push_back(start);
-  }
-  const std::optional<PatchRegion> region = make_region(layout.graph(), patches, starts, starts.empty() ? FreeLoops::Rims : FreeLoops::Open);
-  if (!region) entry.refuse("has quads whose boundary touches itself or is missing, or two starts on one part of it");
-  const std::string kind = entry.at("kind").text();
-  if (kind == "add_cubes" && !region->is_disk()) entry.at("kind").refuse("is for a disk of quads alone");
-  if (kind == "add_cubes") return tower_edit(layout.graph(), *region, static_cast<int>(entry.at("height").integer(1, limits::most_cubes)));
-  if (kind != "repatch") entry.at("kind").refuse("must be \"repatch\" or \"add_cubes\"");
-  LayoutEdit edit = edit_of(*region);
-  const std::vector<PlanEntry> quads = entry.at("new_quads").list();
-  const int corners = static_cast<int>(region->corners.size());
-  for (const PlanEntry& e : quads) edit.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size()) + corners));
-  if (const std::string defect = find_filling_defect(edit.quads, *region); !defect.empty()) entry.at("new_quads").refuse(defect);
-  for (const auto& q : edit.quads) edit.inner_nodes = std::max(edit.inner_nodes, *std::max_element(q.begin(), q.end()) + 1 - corners);
-  return edit;
-}
-
-LayoutScript::Edit edit_from_json(const PlanEntry& entry, const AddressedGraph& layout) {
-  LayoutScript::Edit of;
-  of.edit = layout_edit_from_json(entry, layout);
-  for (const int q : of.edit.patches) of.quads.push_back(to_string(layout.address(q)));
-  for (const PatchSide& start : of.edit.starts) of.start_quads.push_back(to_string(layout.address(start.patch)));
-  of.even = entry.has("even_quads");
-  if (!of.even) return of;
-  of.even_quads = entry.at("even_quads").number(0);
-  if (!entry.has("nodes")) return of;
-  // The region's corners, then the new ones.
-  of.outline.quads = of.edit.quads;
-  int count = 0;
-  for (const auto& q : of.edit.quads) count = std::max(count, 1 + *std::max_element(q.begin(), q.end()));
-  for (const PlanEntry& p : entry.at("nodes").list(count)) of.outline.nodes.push_back(p.point());
-  if (entry.has("curves")) curves_from_json(entry.at("curves"), of.outline);
-  return of;
-}
-
-void apply_round(AddressedGraph& layout, std::vector<LayoutEdit> edits) {
-  for (std::size_t i = 0; i < edits.size(); ++i) {
-    const LayoutChange change = layout.apply(edits[i]);
-    for (std::size_t k = i + 1; k < edits.size(); ++k) edits[k] = renumbered(std::move(edits[k]), change);
-  }
-}
-
 LayoutEdit raw_edit(const PlanEntry& entry) {
   constexpr std::int64_t most = std::numeric_limits<int>::max();
   LayoutEdit edit;
@@ -181,70 +121,14 @@ Plan::Origin origin_from_json(const PlanEntry& entry) {
   origin.base.boundary_side = entry.at("boundary_side").number(0);
   origin.base.least = static_cast<int>(entry.at("least").integer(0, std::numeric_limits<int>::max()));
   origin.base.seed = static_cast<std::uint64_t>(entry.at("seed").integer(0, std::numeric_limits<std::int64_t>::max()));
-  origin.level.vertices = entry.at("vertices").number(0);
-  origin.level.vertices_a_quad = entry.at("vertices_a_quad").number(0);
+  origin.script.vertices = entry.at("vertices").number(0);
+  origin.script.vertices_a_quad = entry.at("vertices_a_quad").number(0);
   int number = 0;
   for (const PlanEntry& round : entry.at("rounds").list()) {
     ++number;
-    for (const PlanEntry& e : round.list()) origin.level.edits.push_back({raw_edit(e), number, false, 0, {}, {}, {}});
+    for (const PlanEntry& e : round.list()) origin.script.edits.push_back({raw_edit(e), number});
   }
   return origin;
-}
-
-// --- levels ----------------------------------------------------------------------------------------------------------------------------
-QuadGraph graph_of(const LayoutOutline& base) {
-  QuadGraph layout;
-  layout.nodes = base.quads;
-  layout.neighbours = base.neighbours;
-  layout.node_count = static_cast<int>(base.nodes.size());
-  if (!layout.neighbours.empty()) return layout;
-  layout.neighbours.resize(base.quads.size());
-  std::map<std::pair<int, int>, PatchSide> sides;
-  for (int q = 0; q < layout.patch_count(); ++q)
-    for (int i = 0; i < 4; ++i) sides[{base.quads[q][i], base.quads[q][(i + 1) % 4]}] = {q, i};
-  for (int q = 0; q < layout.patch_count(); ++q)
-    for (int i = 0; i < 4; ++i)
-      if (const auto it = sides.find({base.quads[q][(i + 1) % 4], base.quads[q][i]}); it != sides.end()) layout.neighbours[q][i] = it->second;
-  return layout;
-}
-
-std::vector<LayoutScript::Level> levels_from_json(const PlanEntry& entry, const LayoutOutline& base) {
-  AddressedGraph layout(graph_of(base));
-  std::vector<LayoutScript::Level> levels;
-  for (const PlanEntry& e : entry.list()) {
-    e.only({"level", "vertices", "vertices_a_quad", "operations"});
-    const auto level = static_cast<std::size_t>(e.at("level").integer(static_cast<std::int64_t>(levels.size()) + 1, limits::most_levels));
-    while (levels.size() < level) {
-      if (4 * static_cast<std::int64_t>(layout.graph().patch_count()) > kMostPlanQuads)
-        e.at("level").refuse("would have more than " + std::to_string(kMostPlanQuads) + " quads");
-      levels.emplace_back();
-      layout.quadrisect();
-    }
-    LayoutScript::Level& of = levels.back();
-    if (e.has("vertices")) of.vertices = e.at("vertices").number(0);
-    if (e.has("vertices_a_quad")) of.vertices_a_quad = e.at("vertices_a_quad").number(0);
-    // Operations of one round are named by the layout before it; without rounds each one is a round of its own.
-    std::int64_t now = -1;
-    std::vector<LayoutEdit> round;
-    for (const PlanEntry& op : e.at("operations").list()) {
-      op.only({"kind", "quads", "start", "starts", "height", "new_quads", "round", "even_quads", "nodes", "curves"});
-      const std::int64_t r = op.has("round") ? op.at("round").integer(std::max<std::int64_t>(0, now), kMostRounds) : now + 1;
-      if (r != now) apply_round(layout, std::exchange(round, {}));
-      LayoutScript::Edit edit = edit_from_json(op, layout);
-      edit.round = static_cast<int>(r);
-      for (const LayoutEdit& other : round)
-        for (const int q : other.patches)
-          if (std::find(edit.edit.patches.begin(), edit.edit.patches.end(), q) != edit.edit.patches.end())
-            op.refuse("has a quad that another operation of its round has");
-      if (edit.even && r > 0) op.at("even_quads").refuse("belongs to the first round, which is 0");
-      if (!edit.even && r == 0 && !of.edits.empty() && of.edits.back().even) op.refuse("has no \"even_quads\", as others of its round have");
-      round.push_back(edit.edit);
-      of.edits.push_back(std::move(edit));
-      now = r;
-    }
-    apply_round(layout, std::move(round));
-  }
-  return levels;
 }
 
 // --- regions -------------------------------------------------------------------------------------------------------------------------
@@ -276,7 +160,7 @@ Plan::Region region_from_json(const PlanEntry& entry) {
       entry.at("layout").refuse("must be \"automatic\", \"cubes\", \"rows\", \"even\" or \"template\"");
     keys.insert("layout");
     if (r.pattern.kind == RegionPattern::Kind::Cubes || r.pattern.kind == RegionPattern::Kind::Rows) keys.insert("height");
-    if (r.pattern.kind == RegionPattern::Kind::Even) keys.insert("even_quads");
+    if (r.pattern.kind == RegionPattern::Kind::Even) keys.insert({"even_quads", "new_quads", "nodes", "sides"});
     if (r.pattern.kind == RegionPattern::Kind::Template) keys.insert("new_quads");
     keys.insert("start");
     keys.insert("starts");
@@ -295,10 +179,20 @@ Plan::Region region_from_json(const PlanEntry& entry) {
     const std::vector<PlanEntry> start = e.list(2);
     r.starts.push_back({start[0].text(), start[1].index(4)});
   }
-  if (r.pattern.kind == RegionPattern::Kind::Template && r.starts.empty()) entry.at("start");
-  if (r.pattern.kind == RegionPattern::Kind::Template) {
+  const bool has_quads = r.pattern.kind == RegionPattern::Kind::Template || entry.has("new_quads");
+  if (has_quads && r.starts.empty()) entry.at("start");
+  if (has_quads) {
     const std::vector<PlanEntry> quads = entry.at("new_quads").list();
     for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
+  }
+  if (entry.has("nodes")) {
+    // The region's corners, then the new ones.
+    LayoutOutline& outline = r.pattern.outline;
+    outline.quads = r.pattern.quads;
+    int count = 0;
+    for (const auto& q : outline.quads) count = std::max(count, 1 + *std::max_element(q.begin(), q.end()));
+    for (const PlanEntry& p : entry.at("nodes").list(count)) outline.nodes.push_back(p.point());
+    if (entry.has("sides")) curves_from_json(entry.at("sides"), outline);
   }
   if (entry.has("opens"))
     for (const PlanEntry& e : entry.at("opens").list()) r.opens.push_back(static_cast<int>(e.integer(0, std::numeric_limits<int>::max())));
@@ -329,7 +223,7 @@ Plan plan_from_json(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw Error(ErrorCode::InvalidInput, "the plan is not JSON");
   const PlanEntry top(json, PlanEntry::kTop);
-  top.only({"format", "version", "topology", "base", "levels", "operations"});
+  top.only({"format", "version", "topology", "base", "operations"});
   if (top.at("format").text() != kFormat) top.at("format").refuse(std::string("must be \"") + kFormat + "\"");
   if (const std::int64_t version = top.at("version").integer(1, 1000000); version > kVersion)
     throw Error(ErrorCode::Unsupported,
@@ -345,13 +239,10 @@ Plan plan_from_json(const std::string& text) {
   if (base.has("boundary_nodes")) {
     base.only({"boundary_nodes", "cubes"});
     plan.tower = tower_from_json(base);
-    if (top.has("levels") && !top.at("levels").list().empty())
-      top.at("levels").refuse("must be empty: quads have addresses once the base has been made; \"operations\" may be given");
   } else {
     plan.base = base_from_json(base);
     if (base.has("origin")) plan.origin = origin_from_json(base.at("origin"));
   }
-  if (top.has("levels") && !plan.tower) plan.levels = levels_from_json(top.at("levels"), plan.base);
   if (top.has("operations"))
     for (const PlanEntry& e : top.at("operations").list()) {
       plan.regions.push_back(region_from_json(e));

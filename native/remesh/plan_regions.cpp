@@ -49,9 +49,8 @@ class RegionRepatcher {
       made_.refine();
     }
     RegionRepatch repatch = resolved(region, made_.quads());
-    for (DrawnStroke& s : repatch.pattern.strokes)
-      for (Vec3& p : s.points) p = placement_.to_unit(p);
-    made_.apply(repatch_region(made_.state(), repatch, progress_), kAfterRounds);
+    move_pattern(repatch.pattern, [&](const Vec3& p) { return placement_.to_unit(p); });
+    made_.apply(repatch_region(made_.state(), repatch, progress_));
     finest_ = made_.level();
   }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "construction/construction.h"
@@ -15,9 +14,6 @@ RegionRepatch resolved(const Plan::Region& region, const AddressedGraph& level);
 
 // A region of the construction's level by addresses, which stay as they are while other regions are laid out anew.
 Plan::Region region_of(const RegionRepatch& repatch, const Construction& made);
-
-// The edits of regions belong to no round of a search: they come after all of these.
-inline constexpr int kAfterRounds = std::numeric_limits<int>::max();
 
 // Lays out a plan's regions anew, coarse ones first, those of one level in their order. `made`: at the last level that has operations, all with maps;
 // of the surface brought to unit size by `placement`. Throws LayoutError with places in the input's space, Error{InvalidInput} with the place in the

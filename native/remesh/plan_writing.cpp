@@ -57,7 +57,7 @@ void put_starts(Json& out, const std::vector<std::pair<Quad, int>>& starts) {
     for (const auto& [quad, side] : starts) out["starts"].push_back({quad, side});
 }
 
-// Edits of the base level: all are named by numbers in the base domain as it was first, which the plan does not hold.
+// Edits of the base: all are named by numbers in the base domain as it was first, which the plan does not hold.
 Json raw_edit(const LayoutEdit& edit) {
   Json out{{"patches", edit.patches}};
   std::vector<std::pair<int, int>> starts;
@@ -77,48 +77,16 @@ Json origin_to_json(const Plan::Origin& origin) {
     return out;
   }
   Json rounds = Json::array();
-  for (const std::vector<LayoutScript::Edit>& round : rounds_of(origin.level)) {
+  for (const std::vector<LayoutEdit>& round : rounds_of(origin.script)) {
     Json list = Json::array();
-    for (const LayoutScript::Edit& of : round) list.push_back(raw_edit(of.edit));
+    for (const LayoutEdit& edit : round) list.push_back(raw_edit(edit));
     rounds.push_back(std::move(list));
   }
-  return {{"surface", origin.surface},         {"faces", origin.faces},
-          {"size", origin.base.size},          {"boundary_side", origin.base.boundary_side},
-          {"least", origin.base.least},        {"seed", origin.base.seed},
-          {"vertices", origin.level.vertices}, {"vertices_a_quad", origin.level.vertices_a_quad},
+  return {{"surface", origin.surface},          {"faces", origin.faces},
+          {"size", origin.base.size},           {"boundary_side", origin.base.boundary_side},
+          {"least", origin.base.least},         {"seed", origin.base.seed},
+          {"vertices", origin.script.vertices}, {"vertices_a_quad", origin.script.vertices_a_quad},
           {"rounds", std::move(rounds)}};
-}
-
-// Kinds of edits: towers are told by their height, the rest by its quads.
-const char* kind_of(const LayoutEdit& edit) { return edit.rings > 0 ? "add_cubes" : "repatch"; }
-
-Json edit_to_json(const LayoutScript::Edit& of) {
-  Json out{{"kind", kind_of(of.edit)}, {"quads", of.quads}};
-  std::vector<std::pair<std::string, int>> starts;
-  for (std::size_t k = 0; k < of.start_quads.size(); ++k) starts.push_back({of.start_quads[k], of.edit.starts[k].side});
-  put_starts(out, starts);
-  if (of.edit.rings > 0)
-    out["height"] = of.edit.rings;
-  else
-    out["new_quads"] = of.edit.quads;
-  out["round"] = of.round;
-  if (of.even) {
-    out["even_quads"] = of.even_quads;
-    out["nodes"] = nodes_to_json(of.outline);
-    out["curves"] = curves_to_json(of.outline);
-  }
-  return out;
-}
-
-Json levels_to_json(const Plan& plan) {
-  Json out = Json::array();
-  for (std::size_t level = 0; level < plan.levels.size(); ++level) {
-    const LayoutScript::Level& of = plan.levels[level];
-    Json operations = Json::array();
-    for (const LayoutScript::Edit& edit : of.edits) operations.push_back(edit_to_json(edit));
-    out.push_back({{"level", level + 1}, {"vertices", of.vertices}, {"vertices_a_quad", of.vertices_a_quad}, {"operations", std::move(operations)}});
-  }
-  return out;
 }
 
 Json curves_to_json(const std::vector<DrawnStroke>& strokes) {
@@ -141,7 +109,11 @@ Json regions_to_json(const Plan& plan) {
     if (r.pattern.height > 0) region["height"] = r.pattern.height;
     if (r.pattern.even_quads > 0) region["even_quads"] = r.pattern.even_quads;
     put_starts(region, r.starts);
-    if (r.pattern.kind == RegionPattern::Kind::Template) region["new_quads"] = r.pattern.quads;
+    if (!r.pattern.quads.empty()) region["new_quads"] = r.pattern.quads;
+    if (!r.pattern.outline.nodes.empty()) {
+      region["nodes"] = nodes_to_json(r.pattern.outline);
+      region["sides"] = curves_to_json(r.pattern.outline);
+    }
     if (!r.opens.empty()) region["opens"] = r.opens;
     region["buffer_rings"] = r.buffer_rings;
     out.push_back(std::move(region));
@@ -175,7 +147,6 @@ std::string to_json(const Plan& plan) {
   Json base = base_to_json(plan);
   if (plan.origin) base["origin"] = origin_to_json(*plan.origin);
   out["base"] = std::move(base);
-  out["levels"] = levels_to_json(plan);
   if (!plan.regions.empty()) out["operations"] = regions_to_json(plan);
   return out.dump();
 }

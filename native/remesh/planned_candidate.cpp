@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "layout/drawn/layout_transfer.h"
 #include "layout/search/base_map.h"
 #include "remesh/candidate.h"
 #include "remesh/late_topology.h"
@@ -14,16 +15,9 @@ namespace {
 
 constexpr int kLikelyCubes = 8;  // of a tower whose height is left to the surface
 
-// A base's level, and then those that the plan has above it.
-LayoutScript script_over(LayoutScript::Level base, const Plan& plan) {
-  LayoutScript script{{std::move(base)}};
-  script.levels.insert(script.levels.end(), plan.levels.begin(), plan.levels.end());
-  return script;
-}
-
-Operations operations_of(const RemeshTask& task, const Plan& plan) {
+Operations operations_of(const RemeshTask& task, const std::vector<Plan::Region>& planned) {
   return [&](Construction& made) {
-    std::vector<Plan::Region> regions = repatch_regions(made, plan.regions, task.source.placement, task.progress.part(0.55, 0.6));
+    std::vector<Plan::Region> regions = repatch_regions(made, planned, task.source.placement, task.progress.part(0.55, 0.6));
     // What the plan has no operation for opens as it would without a plan.
     const LateTopology late = open_late(made, task, plan_budget(task.options, task.source, {}));
     if (!late.unopened.empty())
@@ -41,7 +35,7 @@ std::int64_t faces_for(const RemeshTask& task, double base_quads) {
 
 double likely_quads(const BoundaryTower& tower) { return 4 * std::max(kLikelyCubes, tower.cubes) + 1; }
 
-Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, const Plan& plan, std::int64_t faces, WorkingSurfaceInUse& in_use) {
+Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, std::int64_t faces, WorkingSurfaceInUse& in_use) {
   const Placement& placement = task.source.placement;
   task.progress.stage("base domain");
   task.watch.start("base");
@@ -51,13 +45,13 @@ Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, const P
   if (!base) return {std::nullopt, base.reason};
   task.progress.stage("map");
   task.watch.start("map");
-  return map_to_base(working.mesh, std::move(*base), script_over({}, plan), task.progress.part(0.2, 0.45));
+  return map_to_base(working.mesh, std::move(*base), task.progress.part(0.2, 0.45));
 }
 
 Found<Candidate> assembled(const RemeshTask& task, const WorkingSurface& working, Found<BaseMap> map, const std::optional<Plan::Origin>& origin,
-                           const Plan& plan) {
+                           const Operations& operations) {
   if (!map) return {std::nullopt, map.reason};
-  return found([&] { return assemble_candidate(task, working, std::move(*map), origin, operations_of(task, plan)); });
+  return found([&] { return assemble_candidate(task, working, std::move(*map), origin, operations); });
 }
 
 // A base on four points of the boundary. From then on the plan has its quads.
@@ -67,8 +61,8 @@ Candidate grow(const RemeshTask& task, const Plan& plan) {
   origin.tower = plan.tower;
   origin.faces = faces_for(task, likely_quads(*plan.tower));
   WorkingSurfaceInUse working;
-  Found<BaseMap> map = map_to_tower(task, *plan.tower, plan, origin.faces, working);
-  Found<Candidate> grown = assembled(task, working.of_size(task, origin.faces), std::move(map), origin, plan);
+  Found<BaseMap> map = map_to_tower(task, *plan.tower, origin.faces, working);
+  Found<Candidate> grown = assembled(task, working.of_size(task, origin.faces), std::move(map), origin, operations_of(task, plan.regions));
   if (!grown) throw Error(ErrorCode::Unsupported, "no map to a chain of cubes on the boundary is found: " + grown.reason);
   return std::move(*grown);
 }
@@ -81,13 +75,13 @@ std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   const std::int64_t faces = plan.origin->faces;
   Found<BaseMap> map;
   if (plan.origin->tower) {
-    map = map_to_tower(task, *plan.origin->tower, plan, faces, working);
+    map = map_to_tower(task, *plan.origin->tower, faces, working);
   } else {
     const Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
     if (!base) return std::nullopt;
-    map = map_to_base(working.of_size(task, faces).mesh, *base.value, script_over(plan.origin->level, plan), task.progress.part(0.15, 0.45));
+    map = map_to_base(working.of_size(task, faces).mesh, *base.value, plan.origin->script, task.progress.part(0.15, 0.45));
   }
-  Found<Candidate> c = assembled(task, working.of_size(task, faces), std::move(map), plan.origin, plan);
+  Found<Candidate> c = assembled(task, working.of_size(task, faces), std::move(map), plan.origin, operations_of(task, plan.regions));
   if (!c) return std::nullopt;
   const LayoutOutline made = plan_from_json(c->plan).base;
   if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;
@@ -101,18 +95,17 @@ Candidate lay_out(const RemeshTask& task, const Plan& plan) {
   WorkingSurfaceInUse in_use;
   const WorkingSurface& working = in_use.of_size(task, faces_for(task, static_cast<double>(plan.base.quads.size())));
   LayoutOutline outline = plan.base;
-  const auto to_unit = [&](const Vec3& p) { return placement.to_unit(p); };
-  move_outline(outline, to_unit);
+  move_outline(outline, [&](const Vec3& p) { return placement.to_unit(p); });
   const TransferredLayout laid = transfer_layout(working.mesh, outline, task.progress.part(0.05, 0.2));
   if (!laid.failure.empty()) throw Error(ErrorCode::InvalidInput, "the plan's base cannot be laid out on this surface: " + laid.failure);
   task.progress.stage("map");
   task.watch.start("map");
-  LayoutScript script = script_over({}, plan);
-  move_outlines(script.levels, to_unit);
-  for (LayoutScript::Level& level : script.levels)
-    for (LayoutScript::Edit& edit : level.edits) edit.even_quads = 0;
-  Found<BaseMap> map = map_to_base(working.mesh, to_patched_surface(laid.layout), script, task.progress.part(0.2, 0.45));
-  Found<Candidate> c = assembled(task, working, std::move(map), std::nullopt, plan);
+  Found<BaseMap> map = map_to_base(working.mesh, to_patched_surface(laid.layout), task.progress.part(0.2, 0.45));
+  // Even quads are not to be found again: on this surface they would be others.
+  std::vector<Plan::Region> regions = plan.regions;
+  for (Plan::Region& region : regions)
+    if (!region.pattern.quads.empty()) region.pattern.even_quads = 0;
+  Found<Candidate> c = assembled(task, working, std::move(map), std::nullopt, operations_of(task, regions));
   if (!c) throw Error(ErrorCode::Unsupported, "no map to the plan's quads is found on this surface: " + c.reason);
   return std::move(*c);
 }

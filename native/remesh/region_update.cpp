@@ -120,7 +120,7 @@ RegionUpdate repatch_hierarchy(const HybridMesh& hierarchy, const std::vector<in
   out.energy_before = edit->energy_before;
   out.energy_after = edit->energy_after;
   for (const auto& [q, map] : edit->maps) patches.push_back(q);
-  made.apply(std::move(*edit), 0);
+  made.apply(std::move(*edit));
   made.close();
   HybridMesh& h = made.hierarchy();
   out.operation = h.operation_count() - 1;

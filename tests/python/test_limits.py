@@ -85,8 +85,9 @@ def test_towers_on_a_boundary():
 
 def test_levels_of_a_plan():
     corners = {"nodes": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "quads": [[0, 1, 2, 3]]}
-    plan = {"format": plans.FORMAT, "version": plans.VERSION, "base": corners, "levels": [{"level": LIMITS["most_levels"] + 1, "operations": []}]}
-    with pytest.raises(_native.InvalidInput, match=rf"levels\[0\].level must be a whole number from 1 to {LIMITS['most_levels']}"):
+    operation = {"level": LIMITS["most_levels"] + 1, "quads": ["0.0"], "layout": "automatic"}
+    plan = {"format": plans.FORMAT, "version": plans.VERSION, "base": corners, "operations": [operation]}
+    with pytest.raises(_native.InvalidInput, match=rf"operations\[0\].level must be a whole number from 1 to {LIMITS['most_levels']}"):
         _native.remesh(*cube(), {"plan": json.dumps(plan)})
 
 

@@ -36,12 +36,10 @@ def result(request):
 def root_count(result):
     """How many root quads the addresses of a plan know: those of the base and the new ones of every operation."""
     plan = json.loads(result.plan)
-    operations = [operation for level in plan["levels"] for operation in level["operations"]]
-    assert all(operation["kind"] == "repatch" for operation in operations)  # a tower would not list its quads
-    count = len(plan["base"]["quads"]) + sum(len(operation["new_quads"]) for operation in operations)
+    count = len(plan["base"]["quads"])
     for region in plan.get("operations", []):
-        # Skin that grew on the fitted base: towers have a ring of as many quads as the region has sides, at most four a quad, for each cube, and the region's own on top.
-        count += len(region["new_quads"]) if region["layout"] == "template" else len(region["quads"]) * (1 + 4 * region["height"])
+        # Towers have a ring of as many quads as the region has sides, at most four a quad, for each cube, and the region's own on top.
+        count += len(region["new_quads"]) if "new_quads" in region else len(region["quads"]) * (1 + 4 * region["height"])
     return count
 
 

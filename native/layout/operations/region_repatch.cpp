@@ -8,9 +8,12 @@
 #include <string>
 #include <utility>
 
+#include "base/found.h"
 #include "layout/drawn/face_filling.h"
 #include "layout/operations/region_exchange.h"
 #include "layout/operations/region_outline.h"
+#include "layout/operations/region_uncutting.h"
+#include "layout/regions/disk_drawing.h"
 #include "layout/regions/patch_sets.h"
 #include "layout/regions/region_layout.h"
 #include "layout/regions/region_pattern.h"
@@ -74,12 +77,6 @@ LayoutEdit in_part(LayoutEdit edit, const LocalRegion& region) {
   return edit;
 }
 
-std::vector<DrawnStroke> unit_strokes(std::vector<DrawnStroke> strokes, const Placement& placement) {
-  for (DrawnStroke& s : strokes)
-    for (Vec3& p : s.points) p = placement.to_unit(p);
-  return strokes;
-}
-
 // The curves as an edit of the region, by the part's numbers.
 DrawnEdit draw(const RegionSurface& surface, const LocalRegion& local, std::vector<DrawnStroke> strokes, const Progress& progress) {
   const PatchRegion& region = local.in_part;
@@ -120,17 +117,23 @@ LayoutEdit rows_in(const RegionSurface& surface, const LocalRegion& local, int h
   }
 }
 
-DrawnEdit even_in(const RegionSurface& surface, const LocalRegion& local, int quads, const Progress& progress) {
-  const int wanted = quads > 0 ? quads : static_cast<int>(local.in_part.patches.size());
+// Those that it is known to have become, on another surface along their outline.
+std::optional<DrawnEdit> even_in(const RegionSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
+  const bool known = !pattern.quads.empty();
+  if (known && pattern.even_quads == 0) return std::nullopt;
+  const int wanted = pattern.even_quads > 0 ? pattern.even_quads : static_cast<int>(local.in_part.patches.size());
   std::string defect = "no even quads with its boundary are found: try another number of them, or a larger region";
   constexpr std::uint64_t tries = 4;
   for (std::uint64_t seed = 1; seed <= tries; ++seed) {
     std::optional<DrawnEdit> drawn = even_edit(local.graph, local.in_part, surface, wanted, seed, progress);
     if (!drawn) continue;
     defect = find_edit_defect(local.level, local.in_level, in_level(drawn->edit, local));
-    if (defect.empty()) return std::move(*drawn);
+    if (!defect.empty()) continue;
+    if (!known || drawn->edit.quads == pattern.quads) return drawn;
+    break;
   }
-  throw Error(ErrorCode::InvalidInput, defect);
+  if (!known) throw Error(ErrorCode::InvalidInput, defect);
+  return std::nullopt;
 }
 
 // New quads that need no curves, by the part's numbers. Without a piece they may be drawn anywhere in a disk.
@@ -143,12 +146,13 @@ DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, cons
   const bool disks = std::all_of(region.pieces.begin(), region.pieces.end(),
                                  [](const RegionPiece& p) { return p.euler == 1 && p.rims.size() == 1 && p.open_loops == 0; });
   if (kind == Kind::Automatic && !disks) kind = has_rings(region) ? Kind::Rows : Kind::Even;
-  if (kind == Kind::Even) return even_in(surface, local, pattern.even_quads, progress);
+  if (kind == Kind::Even)
+    if (std::optional<DrawnEdit> even = even_in(surface, local, pattern, progress)) return std::move(*even);
   LayoutEdit edit;
   std::vector<std::vector<int>> spokes;
   if (kind == Kind::Automatic) {
     edit = automatic_edit(level, region, progress);
-  } else if (kind == Kind::Template) {
+  } else if (kind == Kind::Template || kind == Kind::Even) {
     edit = template_edit(region, pattern.quads);
   } else if (kind == Kind::Rows) {
     edit = rows_in(surface, local, pattern.height, spokes, progress);
@@ -160,8 +164,13 @@ DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, cons
     throw Error(ErrorCode::InvalidInput, "its new quads " + defect);
   if (const std::string defect = find_edit_defect(level, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
   DrawnEdit out{in_part(std::move(edit), local), {}};
-  if (region.is_disk()) return out;
-  out.piece = lay_out_region(surface, spread_outline(surface, out.edit, spokes), progress);
+  LayoutOutline outline = pattern.outline;
+  outline.quads = pattern.quads;
+  if (outline.nodes.empty()) {
+    if (region.is_disk()) return out;
+    outline = spread_outline(surface, out.edit, spokes);
+  }
+  out.piece = lay_out_region(surface, std::move(outline), progress);
   if (out.piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
   return out;
 }
@@ -206,7 +215,21 @@ double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<st
   options.corners_move = false;  // ends of the rim are among them
   double area = 0;
   for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
-  return (smooth_map(charts, part, options, progress).energy - 1) * area;
+  // Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
+  constexpr int attempts = 3;
+  Found<GlobalMapReport> report;
+  for (int attempt = 0; attempt < attempts && !report; ++attempt, options.vertices_a_quad *= 3) {
+    ChartMesh trial = charts;
+    report = found([&] { return smooth_map(trial, part, options, progress); });
+    if (report) charts = std::move(trial);
+  }
+  if (!report) throw NoMap(report.reason);
+  return (report->energy - 1) * area;
+}
+
+// Of lengths in unit size, with which the quads have area 1 on average.
+double scale_of(const LevelState& state, const QuadGraph& quads) {
+  return state.placement.diagonal * std::sqrt(static_cast<double>(quads.patch_count()) / state.area);
 }
 
 MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& repatch, const Progress& progress) {
@@ -218,7 +241,8 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
                 "the quads of a region must have a boundary that does not touch itself, and each of its starts must be on a part of it of its own");
   // One ring at least: sides that the new quads share with it follow its map.
   const std::vector<int> quads = with_rings(level, repatch.patches, std::max(1, repatch.buffer_rings));
-  std::vector<PatchMap> maps = maps_of(state, quads);
+  RootTriangles roots;
+  std::vector<PatchMap> maps = maps_of(state, quads, roots);
   for (PatchMap& map : maps)
     for (Vec3& p : map.positions) p = state.placement.to_unit(p);
   GluedMaps glued = glue_patch_maps(maps, part_of(level, quads));
@@ -232,20 +256,26 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   std::vector<PatchSide> starts = local.in_level.starts();
   for (PatchSide& start : starts) start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
   local.in_part = *make_region(part.surface, first, starts, loops);
-  RegionSurface surface = surface_of(part.surface, local.in_part);
+  RegionSurface surface = uncut_region(surface_of(part.surface, local.in_part), glued);
+  glued.trace_on(roots.source_face, roots.source);
   open_events(state, repatch.opens, local, surface, glued);
 
   MappedEdit out;
   out.opens = repatch.opens;
-  const double scale = state.placement.diagonal * std::sqrt(static_cast<double>(level.patch_count()) / state.area);
-  const std::vector<double> energies = patch_energies(part, scale, GlobalMapOptions().theta);
+  const std::vector<double> energies = patch_energies(part, scale_of(state, level), GlobalMapOptions().theta);
   for (std::size_t k = 0; k < energies.size(); ++k)
     if (repatch.buffer_rings > 0 || k < repatch.patches.size()) out.energy_before += energies[k];
-  DrawnEdit edit = repatch.pattern.kind == RegionPattern::Kind::Drawn
-                       ? draw(surface, local, unit_strokes(repatch.pattern.strokes, state.placement), progress.part(0.2, 0.4))
-                       : find_edit(surface, local, repatch.pattern, progress.part(0.2, 0.4));
+  RegionPattern pattern = repatch.pattern;
+  move_pattern(pattern, [&](const Vec3& p) { return state.placement.to_unit(p); });
+  DrawnEdit edit = pattern.kind == RegionPattern::Kind::Drawn ? draw(surface, local, std::move(pattern.strokes), progress.part(0.2, 0.4))
+                                                              : find_edit(surface, local, pattern, progress.part(0.2, 0.4));
   out.edit = in_level(edit.edit, local);
-  const LayoutChange change = edit.piece.patch.empty() ? apply_edit(part, edit.edit) : apply_edit(part, std::move(edit), std::move(surface));
+  if (pattern.kind == RegionPattern::Kind::Even) {
+    out.outline = outline_of(edit, local.in_part);
+    move_outline(out.outline, [&](const Vec3& p) { return state.placement.from_unit(p); });
+  }
+  if (edit.piece.patch.empty()) edit.piece = draw_quads(surface, edit.edit);
+  const LayoutChange change = apply_edit(part, std::move(edit), std::move(surface));
   map_patches(part.surface, change.added, part.corners, progress.part(0.4, 0.5));
 
   // The numbers that the part's quads have in the level afterwards.
@@ -269,7 +299,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
     for (int i = 0; i < 4; ++i) held[k][i] = smoothed.surface.neighbours[k][i].patch < 0 && after.neighbours[number[relaxed[k]]][i].patch >= 0;
 
   ChartMesh charts(smoothed.surface, corners);
-  charts.scale = scale;
+  charts.scale = scale_of(state, after);  // even ones are what it is relaxed to
   out.energy_after = relax(charts, smoothed.surface, held, repatch.map, progress.part(0.5, 0.8));
   std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.faces, progress.part(0.8, 1));
   for (std::size_t k = 0; k < relaxed.size(); ++k) {
@@ -282,6 +312,12 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
 }
 
 }  // namespace
+
+void move_pattern(RegionPattern& pattern, const PointMove& move) {
+  for (DrawnStroke& s : pattern.strokes)
+    for (Vec3& p : s.points) p = move(p);
+  move_outline(pattern.outline, move);
+}
 
 MappedEdit repatch_region(const LevelState& state, const RegionRepatch& region, const Progress& progress) {
   try {

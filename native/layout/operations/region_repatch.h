@@ -24,14 +24,17 @@ struct RegionPattern {
   std::vector<DrawnStroke> strokes;       // Drawn
   int height = 0;                         // Cubes, Rows; 0: so that quads are about square, at least 1
   int even_quads = 0;                     // Even: about so many; 0: as many as the region has
-  std::vector<std::array<int, 4>> quads;  // Template: numbered as in LayoutEdit
+  std::vector<std::array<int, 4>> quads;  // Template, numbered as in LayoutEdit; Even: those that it became where it was found, if that is known, ...
+  LayoutOutline outline;                  // ... and where they lay, along which they are laid out on another surface. Its quads are those above
 };
+// Moves all that has a place in space.
+void move_pattern(RegionPattern& pattern, const PointMove& move);
 
 // Quads of one level that are to be laid out anew: a region of any topology.
 struct RegionRepatch {
   std::vector<int> patches;
   std::vector<PatchSide> starts;  // the sides that begin at the first corners of the first rims, see make_region()
-  RegionPattern pattern;          // its strokes where the level's maps have the surface
+  RegionPattern pattern;          // where the level's maps have the surface
   std::vector<int> opens;  // events of the level's surface that open: they are inside the region, and the pattern is laid out on what comes then
   int buffer_rings = 1;    // so many rings of quads around are relaxed with the new ones; 0: none
   GlobalMapOptions map;    // how much is done for a smooth map

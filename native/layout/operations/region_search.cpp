@@ -9,9 +9,9 @@
 
 #include "base/found.h"
 #include "base/parallel.h"
+#include "layout/operations/quad_measures.h"
 #include "layout/regions/region_layout.h"
 #include "layout/regions/region_pattern.h"
-#include "parameterization/patch_energy.h"
 #include "parameterization/patch_gluing.h"
 
 namespace hybrid_mesh {
@@ -24,26 +24,6 @@ GlobalMapOptions trial_map_options() {
   options.cone_rounds = 1;
   options.sweeps = 1;
   return options;
-}
-
-// A value for every quad of a level, of its map.
-template <class Value>
-std::vector<double> of_quads(const LevelState& state, const Value& value) {
-  // A map at a time: its quads are cut out of it together.
-  std::vector<std::vector<int>> groups;
-  std::vector<int> order(state.maps.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return state.maps[a].map < state.maps[b].map; });
-  for (const int q : order) {
-    if (groups.empty() || state.maps[groups.back().front()].map != state.maps[q].map) groups.emplace_back();
-    groups.back().push_back(q);
-  }
-  std::vector<double> out(state.maps.size());
-  parallel_for_each_index(static_cast<std::int64_t>(groups.size()), [&](std::int64_t g) {
-    const std::vector<PatchMap> maps = maps_of(state, groups[g]);
-    for (std::size_t k = 0; k < maps.size(); ++k) out[groups[g][k]] = value(maps[k]);
-  });
-  return out;
 }
 
 int tower_height_of(const LevelState& state, const PatchRegion& region) {
@@ -70,14 +50,8 @@ RegionRepatch repatch_by(const LayoutEdit& edit) {
 
 }  // namespace
 
-double largest_area_ratio(const LevelState& state) {
-  const std::vector<double> areas = of_quads(state, [](const PatchMap& map) { return map_area(map); });
-  return *std::max_element(areas.begin(), areas.end()) * static_cast<double>(areas.size()) / state.area;
-}
-
 std::vector<RegionRepatch> find_regions(const LevelState& state, const EditCandidateOptions& options, const Progress& progress) {
-  const double scale = std::sqrt(static_cast<double>(state.quads.patch_count()) / state.area), theta = GlobalMapOptions().theta;
-  const std::vector<double> energy = of_quads(state, [&](const PatchMap& map) { return map_energy(map, scale, theta); });
+  const std::vector<double> energy = quad_energies(state);
   std::vector<EditCandidate> candidates =
       find_edit_candidates(state.quads, energy, options, [&](const PatchRegion& region) { return tower_height_of(state, region); });
   parallel_for_each_index(static_cast<std::int64_t>(candidates.size()), [&](std::int64_t i) {

@@ -8,9 +8,6 @@
 
 namespace hybrid_mesh {
 
-// How many times the mean area the largest quad of a level covers.
-double largest_area_ratio(const LevelState& state);
-
 // Regions of a level that are better laid out in another way, disjoint with the rings around them: rings and towers for what sticks out, turned sides
 // and nodes. Each was tried out at its own cost; they may be repatched one after the other.
 std::vector<RegionRepatch> find_regions(const LevelState& state, const EditCandidateOptions& options, const Progress& progress);

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "layout/search/layout_replay.h"
+#include "layout/regions/region_layout.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_gluing.h"
 
@@ -32,74 +32,63 @@ ChartMesh smooth(const MappedSurface& mapped, GlobalMapOptions options, const Pr
   throw NoMap(failure);
 }
 
-// The map of a base's layout that was found elsewhere, made anew on another version of the surface.
-CarriedMap repeat_base(CarriedMap map, const LayoutScript::Level& base, const GlobalMapOptions& options, const Progress& progress) {
+// The map of a layout that was found elsewhere, made anew on another version of the surface.
+CarriedMap repeat(CarriedMap map, const LayoutScript& script, const GlobalMapOptions& options, const Progress& progress) {
   MappedSurface mapped{std::move(map.layout), {}};
   mapped.corners.resize(mapped.surface.mesh.faces.size());
-  for (const LayoutScript::Edit& of : base.edits) apply_edit(mapped, of.edit);
+  for (const LayoutScript::Edit& of : script.edits) apply_edit(mapped, of.edit);
   mapped.corners = map_patches(mapped.surface, progress.part(0, 0.2));
   ChartMesh charts = smooth(mapped, options, progress.part(0.2, 1));
   map.replace(std::move(mapped.surface), std::move(charts));
   return map;
 }
 
-LevelMap on_surface(int level, CarriedMap map, const GlobalMapOptions& options, const Progress& progress) {
-  map.carry(kInfinity, options, progress);
-  return {level, std::move(map.layout), std::move(map.charts)};
-}
-
-// The map of a stage carried to the surface, unless it is known that it cannot be.
-LevelMap on_surface(MappedLayouts::Stage stage, const GlobalMapOptions& options, const Progress& progress) {
-  if (!stage.failure.empty()) throw NoMap(stage.failure);
-  return on_surface(stage.level, std::move(stage.map), options, progress);
-}
-
 // A coarse surface may be too coarse for a map: its triangles would have to bend. Then a finer one is taken, at last the surface itself: for the
-// whole search, or, where a base of more quads serves it better (`finer`: skin is to be grown), for the base's own map alone.
+// search, or, where the map that it found cannot be carried to the surface, for that map alone.
 template <class Find>
-BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, bool finer, const GlobalMapOptions& options,
+BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, const GlobalMapOptions& options,
                            const Progress& progress, const Find& find) {
   const std::array<double, 3> factors{1, 2, kInfinity};
   const auto version = [&](double factor, const Progress& part) { return CarriedMap(surface, base.cut(factor * vertices / base.quads(), part)); };
-  Found<MappedLayouts> layouts;
-  for (std::size_t k = 0; k < (finer ? 1 : factors.size()) && !layouts; ++k)
-    layouts = found([&] { return find(version(factors[k], progress.part(0, 0.05)), progress.part(0.05, 0.6)); });
-  if (!layouts) throw NoMap(layouts.reason);
-  BaseMap out;
-  for (MappedLayouts::Stage& stage : layouts->stages) {
-    const int level = stage.level;
-    Found<LevelMap> map = found([&] { return on_surface(std::move(stage), options, progress.part(0.6, 0.7)); });
-    for (std::size_t k = 1; k < factors.size() && level == 0 && !map; ++k)
-      map = found([&] {
-        CarriedMap again = repeat_base(version(factors[k], progress.part(0.7, 0.75)), layouts->script.levels[0], options, progress.part(0.75, 0.9));
-        return on_surface(level, std::move(again), options, progress.part(0.9, 1));
-      });
-    if (!map) throw NoMap(map.reason);
-    out.levels.push_back(std::move(*map));
-  }
-  out.script = std::move(layouts->script);
-  return out;
+  Found<SearchedLayout> searched;
+  for (std::size_t k = 0; k < factors.size() && !searched; ++k)
+    searched = found([&] { return find(version(factors[k], progress.part(0, 0.05)), progress.part(0.05, 0.6)); });
+  if (!searched) throw NoMap(searched.reason);
+  const LayoutScript& script = searched->script;
+  const auto on_surface = [&](CarriedMap map, const Progress& part) {
+    map.carry(options, part);
+    return BaseMap{std::move(map.layout), std::move(map.charts), script};
+  };
+  Found<BaseMap> map = found([&] { return on_surface(std::move(searched->map), progress.part(0.6, 0.7)); });
+  for (std::size_t k = 1; k < factors.size() && !map; ++k)
+    map = found([&] {
+      CarriedMap again = repeat(version(factors[k], progress.part(0.7, 0.75)), script, options, progress.part(0.75, 0.9));
+      return on_surface(std::move(again), progress.part(0.9, 1));
+    });
+  if (!map) throw NoMap(map.reason);
+  return std::move(*map);
 }
 
 }  // namespace
 
 Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
   return found([&] {
-    return map_coarse_to_fine(surface, base, options.levels[0].vertices, options.levels.size() > 1, options.levels[0].map, progress,
+    return map_coarse_to_fine(surface, base, options.vertices, options.map, progress,
                               [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
   });
 }
 
 Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress) {
   GlobalMapOptions options;
-  options.vertices_a_quad = script.levels.front().vertices_a_quad;
+  options.vertices_a_quad = script.vertices_a_quad;
   return found([&] {
-    return map_coarse_to_fine(surface, base, script.levels.front().vertices, script.levels.size() > 1, options, progress,
-                              [&](CarriedMap map, const Progress& part) { return replay_layout(std::move(map), script, part); });
+    return map_coarse_to_fine(surface, base, script.vertices, options, progress, [&](CarriedMap map, const Progress& part) {
+      return SearchedLayout{replay_layout(std::move(map), script, part), script};
+    });
   });
 }
 
-Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, const LayoutScript& script, const Progress& progress) {
+Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, const Progress& progress) {
   CutSurface cut;
   cut.coarse = surface;
   for (std::size_t f = 0; f < surface.faces.size(); ++f) cut.coarse.source_face[f] = static_cast<int>(f);
@@ -108,11 +97,8 @@ Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, 
   std::iota(cut.vertex.begin(), cut.vertex.end(), 0);
   cut.patches = std::move(base);
   return found([&] {
-    MappedLayouts layouts = replay_layout(CarriedMap(surface, std::move(cut)), script, progress);
-    BaseMap out;
-    for (MappedLayouts::Stage& stage : layouts.stages) out.levels.push_back(on_surface(std::move(stage), GlobalMapOptions(), progress));
-    out.script = std::move(layouts.script);
-    return out;
+    CarriedMap map = replay_layout(CarriedMap(surface, std::move(cut)), {}, progress);
+    return BaseMap{std::move(map.layout), std::move(map.charts), {}};
   });
 }
 

@@ -7,24 +7,19 @@
 
 namespace hybrid_mesh {
 
-// The smooth map of a surface to the quads of one level: to the base domain, or to that of a finer level that irregular operations have changed.
-struct LevelMap {
-  int level = 0;
+// The smooth map of a surface to the quads of its base domain.
+struct BaseMap {
   PatchedSurface layout;  // nodes and neighbours; its points and faces are those of the charts and name those of the surface. Its sides are of no use
   ChartMesh charts;
-};
-
-struct BaseMap {
-  std::vector<LevelMap> levels;  // that of the base domain first
-  LayoutScript script;
+  LayoutScript script;  // how the layout was improved
 };
 
 // Maps `surface` to `base`, whose layout is improved on the way: found on a coarse version of the surface, and carried back to the surface vertex by
-// vertex. With options for finer levels there is no map sooner than without.
+// vertex.
 Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress);
 // What a script says instead of a search: with one that came of the same surface and base the same map.
 Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress);
-// The same on a surface that is cut along its base's sides already. No map either if the layout has no such quads as the script names.
-Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, const LayoutScript& script, const Progress& progress);
+// On a surface that is cut along its base's sides already, which stay as they are.
+Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, const Progress& progress);
 
 }  // namespace hybrid_mesh

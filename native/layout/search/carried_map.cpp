@@ -34,7 +34,7 @@ PatchedSurface by_surface(PatchedSurface patches, const CutSurface& cut) {
 
 CarriedMap::CarriedMap(const TriangleSurface& surface, CutSurface cut)
     : layout(by_surface(std::move(cut.patches), cut)),
-      surface_(surface),
+      surface_(&surface),
       collapsed_(std::move(cut.collapsed)),
       log_(std::move(cut.log)),
       faces_(faces_of(collapsed_)) {}
@@ -49,33 +49,21 @@ void CarriedMap::uncut(const GlobalMapOptions& options, const Progress& progress
   if (log_.empty() || !is_cut_) return;
   ChartMesh coarse = charts;
   const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress);
-  charts = ChartMesh(coarse, collapsed_, surface_.points, area_of(surface_), vertex_of);
+  charts = ChartMesh(coarse, collapsed_, surface_->points, area_of(*surface_), vertex_of);
   is_cut_ = false;
-  layout.mesh = surface_;
+  layout.mesh = *surface_;
   layout.patch.clear();
   layout.sides.clear();
   layout.source.clear();
-  for (std::size_t f = 0; f < surface_.faces.size(); ++f) layout.mesh.source_face[f] = static_cast<int>(f);
-  for (std::size_t v = 0; v < surface_.points.size(); ++v) layout.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
+  for (std::size_t f = 0; f < surface_->faces.size(); ++f) layout.mesh.source_face[f] = static_cast<int>(f);
+  for (std::size_t v = 0; v < surface_->points.size(); ++v) layout.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
 }
 
-void CarriedMap::carry(double vertices, const GlobalMapOptions& options, const Progress& progress) {
-  if (log_.empty() || collapsed_.vertex_count >= vertices) return;
+void CarriedMap::carry(const GlobalMapOptions& options, const Progress& progress) {
+  if (log_.empty()) return;
   uncut(options, progress.part(0, 0.1));
-  const std::size_t wanted =
-      vertices < static_cast<double>(surface_.points.size()) ? static_cast<std::size_t>(vertices) - collapsed_.vertex_count : log_.size();
-  const std::size_t undone = std::min(wanted, log_.size());
-  ChartMesh fine = charts;
-  carry_map(fine, {log_.end() - static_cast<std::ptrdiff_t>(undone), log_.end()}, options, progress.part(0.1, 1));
-  log_.resize(log_.size() - undone);
-  charts = std::move(fine);
-  collapsed_ = charts.mesh;
-  faces_ = faces_of(collapsed_);
-}
-
-void CarriedMap::quadrisect() {
-  charts.quadrisect();
-  layout = quadrisected(std::move(layout));
+  carry_map(charts, log_, options, progress.part(0.1, 1));
+  log_.clear();
 }
 
 MappedSurface CarriedMap::cut(const Progress& progress) const {

@@ -11,7 +11,7 @@
 
 namespace hybrid_mesh {
 
-// A layout on a coarse version of a surface, and its map, which can be carried to finer versions, at last to the surface itself. Keeps a reference to
+// A layout on a coarse version of a surface, and its map, which can be carried to finer versions, at last to the surface itself. Keeps a pointer to
 // the surface.
 class CarriedMap {
  public:
@@ -22,9 +22,8 @@ class CarriedMap {
   // Frees the map of the cuts: the charts' triangles are then those of the coarse surface, and their vertices and faces the surface's own; nothing
   // happens where the surface itself was cut. Throws NoMap where that cannot be done, and then nothing has changed.
   void uncut(const GlobalMapOptions& options, const Progress& progress);
-  // The same, and undoes collapses until so many vertices are alive. Nothing happens where there is nothing to undo.
-  void carry(double vertices, const GlobalMapOptions& options, const Progress& progress);
-  void quadrisect();
+  // The same, and undoes all collapses: the map is the surface's own then.
+  void carry(const GlobalMapOptions& options, const Progress& progress);
   // The coarse surface cut along the layout's sides as the map has them.
   MappedSurface cut(const Progress& progress) const;
   const std::vector<std::array<int, 3>>& faces() const { return faces_; }
@@ -33,7 +32,7 @@ class CarriedMap {
   ChartMesh charts;       // on `layout.mesh`, or on the uncut coarse surface once it was carried
 
  private:
-  const TriangleSurface& surface_;
+  const TriangleSurface* surface_;
   bool is_cut_ = true;  // the charts' triangles are parts of the coarse surface's
   EditMesh collapsed_;
   std::vector<int> log_;                   // collapses that made the coarse version

@@ -3,11 +3,13 @@
 
 namespace hybrid_mesh {
 
-std::vector<std::vector<LayoutScript::Edit>> rounds_of(const LayoutScript::Level& level) {
-  std::vector<std::vector<LayoutScript::Edit>> rounds;
-  for (const LayoutScript::Edit& edit : level.edits) {
-    if (rounds.empty() || rounds.back().front().round != edit.round) rounds.emplace_back();
-    rounds.back().push_back(edit);
+std::vector<std::vector<LayoutEdit>> rounds_of(const LayoutScript& script) {
+  std::vector<std::vector<LayoutEdit>> rounds;
+  int last = -1;
+  for (const LayoutScript::Edit& of : script.edits) {
+    if (rounds.empty() || of.round != last) rounds.emplace_back();
+    last = of.round;
+    rounds.back().push_back(of.edit);
   }
   return rounds;
 }

@@ -17,29 +17,15 @@ void TrialMap::map_patches_and_keep(const GlobalMapOptions& options, const Progr
   keep();
 }
 
-void TrialMap::refine(double vertices, const GlobalMapOptions& options, const Progress& progress) {
-  // A coarser surface than wished does as well as it can.
-  found([&] { best_.carry(vertices, options, progress); });
-  best_.quadrisect();
-  least_ *= 4;
-}
-
 void TrialMap::begin(double theta, const Progress& progress) {
   scale_ = best_.charts.scale;
   mapped_ = best_.cut(progress);
   energy_ = patch_energies(mapped_, scale_, theta);
 }
 
-LayoutChange TrialMap::change(const LayoutEdit& edit, const Progress& progress) {
+void TrialMap::change(const LayoutEdit& edit, const Progress& progress) {
   const LayoutChange change = apply_edit(mapped_, edit);
   map_patches(mapped_.surface, change.added, mapped_.corners, progress);
-  return change;
-}
-
-LayoutChange TrialMap::change(DrawnEdit drawn, const Progress& progress) {
-  const LayoutChange change = apply_edit(mapped_, std::move(drawn));
-  map_patches(mapped_.surface, change.added, mapped_.corners, progress);
-  return change;
 }
 
 void TrialMap::smooth(GlobalMapOptions options, const Progress& progress) {
@@ -70,15 +56,6 @@ void apply_edits(TrialMap& map, const std::vector<LayoutEdit>& edits, GlobalMapO
   for (const LayoutEdit& edit : edits) map.change(edit, progress.part(0, 0));
   options.newton_steps /= 2;
   options.cone_rounds /= 2;
-  map.smooth(options, progress);
-}
-
-void apply_drawn_edits(TrialMap& map, std::vector<DrawnEdit> drawn, const GlobalMapOptions& options, const Progress& progress) {
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const bool has_lines = !drawn[i].piece.patch.empty();
-    const LayoutChange change = has_lines ? map.change(std::move(drawn[i]), progress.part(0, 0)) : map.change(drawn[i].edit, progress.part(0, 0));
-    for (std::size_t k = i + 1; k < drawn.size(); ++k) drawn[k].edit = renumbered(std::move(drawn[k].edit), change);
-  }
   map.smooth(options, progress);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "layout/regions/region_layout.h"
@@ -16,11 +17,6 @@ class TrialMap {
 
   // Maps the patches of the layout that it was made with. To be called first.
   void map_patches_and_keep(const GlobalMapOptions& options, const Progress& progress);
-  // Frees the map of the cuts. Throws NoMap, see CarriedMap.
-  void uncut(const GlobalMapOptions& options, const Progress& progress) { best_.uncut(options, progress); }
-  // Goes on to the patches' quadrants, on a version of the surface with so many vertices, or a coarser one where that cannot be had.
-  void refine(double vertices, const GlobalMapOptions& options, const Progress& progress);
-
   const CarriedMap& best() const { return best_; }
 
   // Begins a trial with the best layout: the surface cut along its sides, and the energy of its patches.
@@ -28,14 +24,14 @@ class TrialMap {
   const MappedSurface& mapped() const { return mapped_; }        // of the trial
   const std::vector<double>& energy() const { return energy_; }  // per patch as it began, beyond an isometry's, in patches
   double scale() const { return scale_; }                        // of lengths, see ChartMesh
-  // Edits the trial's layout. `drawn`: with the lines along which the new patches' sides lie.
-  LayoutChange change(const LayoutEdit& edit, const Progress& progress);
-  LayoutChange change(DrawnEdit drawn, const Progress& progress);
+  // Edits the trial's layout.
+  void change(const LayoutEdit& edit, const Progress& progress);
   // Smooths the trial's map. Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
   void smooth(GlobalMapOptions options, const Progress& progress);
   // Whether the trial's map has less energy than the best.
   bool is_better() const { return excess_ < least_; }
   void keep();
+  CarriedMap take() { return std::move(best_); }
 
  private:
   CarriedMap best_;
@@ -48,7 +44,5 @@ class TrialMap {
 
 // Edits disjoint regions of the trial's layout, and smooths its map: most of that is as it was before.
 void apply_edits(TrialMap& map, const std::vector<LayoutEdit>& edits, GlobalMapOptions options, const Progress& progress);
-// The same with the lines along which the new patches' sides lie; a piece without patches has none. Most of the map may be new.
-void apply_drawn_edits(TrialMap& map, std::vector<DrawnEdit> drawn, const GlobalMapOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

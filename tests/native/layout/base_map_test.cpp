@@ -6,6 +6,7 @@
 #include <random>
 
 #include "generated_surfaces.h"
+#include "layout/regions/region_layout.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_extraction.h"
@@ -162,13 +163,11 @@ TEST(BaseMap, IsBijectiveAndCarriedToEveryVertex) {
     const BaseDomain base = base_of(surface, 40);
     Context context;
     LayoutSearchOptions options;
-    options.levels.resize(1);
-    options.levels[0].quads = 44;
-    options.levels[0].vertices = 30.0 * base.quads();
+    options.quads = 44;
+    options.vertices = 30.0 * base.quads();
     Found<BaseMap> mapped = map_to_base(surface, base, options, Progress(context));
     ASSERT_TRUE(mapped) << mapped.reason;
-    ASSERT_EQ(mapped->levels.size(), 1u);
-    LevelMap& map = mapped->levels[0];
+    BaseMap& map = *mapped;
     EXPECT_LE(map.layout.patch_count(), 44);
     EXPECT_GE(map.layout.patch_count(), base.quads());
     testing::expect_bijective(map.charts);
@@ -200,15 +199,13 @@ TEST(LayoutSearch, LowersTheEnergyWithinTheSizeAllowed) {
   const auto energy = [&](int rounds, int quads) {
     CutSurface cut = base.cut(30, Progress(context));
     LayoutSearchOptions options;
-    LevelSearchOptions& level = options.levels.emplace_back();
-    level.rounds = rounds;
-    level.quads = quads;
-    const MappedLayouts result = search_layout(CarriedMap(surface, std::move(cut)), options, Progress(context));
-    const CarriedMap& found = result.stages.at(0).map;
+    options.rounds = rounds;
+    options.quads = quads;
+    const CarriedMap found = search_layout(CarriedMap(surface, std::move(cut)), options, Progress(context)).map;
     EXPECT_LE(found.layout.patch_count(), std::max(quads, base.quads()));
     testing::expect_bijective(found.charts);
     expect_simple(found.layout);
-    Distortion density{level.map.theta};
+    Distortion density{options.map.theta};
     double sum = 0, area = 0;
     for (int f = 0; f < static_cast<int>(found.charts.mesh.alive.size()); ++f) {
       if (!found.charts.mesh.alive[f]) continue;
@@ -223,45 +220,6 @@ TEST(LayoutSearch, LowersTheEnergyWithinTheSizeAllowed) {
   const double without = energy(0, base.quads()), turned = energy(3, base.quads()), grown = energy(3, base.quads() + 8);
   EXPECT_LT(turned, without);
   EXPECT_LE(grown, 1.02 * turned);
-}
-
-// A ball with two spikes, for which a cube has no skin.
-PolygonSoup spiked_ball(int n) {
-  PolygonSoup soup = ball(n);
-  for (Vec3& p : soup.points) {
-    const double r = p.norm(), z = p.z() / r, x = p.x() / r;
-    if (z > 0.9) p.z() += 12 * (z - 0.9) * r;
-    if (x > 0.9) p.x() += 9 * (x - 0.9) * r;
-  }
-  return soup;
-}
-
-TEST(Quadrisection, LeavesTheMapWhereItIs) {
-  for (const PolygonSoup& soup : {ball(14, 0.5), torus(40, 20)}) {
-    const TriangleSurface surface = unit(repaired(soup));
-    Context context;
-    PatchedSurface s = base_of(surface, 30).cut(whole_surface, Progress(context)).patches;
-    const auto corners = map_patches(s, Progress(context));
-    ChartMesh charts(s, corners);
-    smooth_map(charts, s, GlobalMapOptions(), Progress(context));
-    ChartMesh finer = charts;
-    const std::vector<PatchMap> maps = extract_patch_maps(charts, s, surface.faces, Progress(context));
-    finer.quadrisect();
-    const PatchedSurface layout = quadrisected(s);
-    ASSERT_EQ(layout.patch_count(), 4 * s.patch_count());
-    const std::vector<PatchMap> parts = extract_patch_maps(finer, layout, surface.faces, Progress(context));
-    expect_simple(layout);
-    for (int q = 0; q < s.patch_count(); ++q) {
-      const PatchSampler whole(maps[q]);
-      for (int k = 0; k < 4; ++k) {
-        EXPECT_STREQ(find_map_defect(parts[4 * q + k]), "");
-        const PatchSampler part(parts[4 * q + k]);
-        const double right = k == 1 || k == 2, upper = k >= 2;
-        for (const double u : {0.13, 0.5, 0.81})
-          for (const double v : {0.27, 0.66}) EXPECT_LT((part(u, v).position - whole(0.5 * (u + right), 0.5 * (v + upper)).position).norm(), 1e-6);
-      }
-    }
-  }
 }
 
 TEST(EvenEdit, LaysADiskOutAnewWithinItsBoundary) {
@@ -300,45 +258,6 @@ TEST(EvenEdit, LaysADiskOutAnewWithinItsBoundary) {
     testing::expect_bijective(ChartMesh(mapped.surface, mapped.corners));
   }
   EXPECT_GE(applied, 3);
-}
-
-TEST(LayoutSearch, GrowsSkinOnFinerLevels) {
-  const TriangleSurface surface = unit(repaired(spiked_ball(30)));
-  BaseDomainOptions base_options;
-  base_options.size = 6;
-  base_options.least = 6;
-  Context context;
-  const BaseDomain base(surface, base_options, Progress(context));
-  EXPECT_EQ(base.quads(), 6);
-  LevelSearchOptions level;
-  level.rounds = 0;
-  level.quads = 6;
-  level.vertices = 1500;
-  level.map.vertices_a_quad = 150;
-  LayoutSearchOptions options{{level}};
-  Found<BaseMap> without = map_to_base(surface, base, options, Progress(context));
-  level.vertices = 3000;
-  level.quads = 130;
-  options.levels.insert(options.levels.end(), 2, level);
-  options.levels.back().threshold = 0.5;
-  options.levels.back().rounds = 2;
-  ASSERT_TRUE(without) << without.reason;
-  EXPECT_EQ(without->levels.size(), 1u);
-  Found<BaseMap> mapped = map_to_base(surface, base, options, Progress(context));
-  ASSERT_TRUE(mapped) << mapped.reason;
-  BaseMap& found = *mapped;
-  ASSERT_EQ(found.script.levels.size(), 3u);
-  EXPECT_TRUE(found.script.levels[0].edits.empty());
-  EXPECT_TRUE(found.script.levels[1].edits.empty());
-  EXPECT_FALSE(found.script.levels[2].edits.empty());
-  ASSERT_EQ(found.levels.size(), 2u);
-  EXPECT_EQ(found.levels[0].level, 0);
-  EXPECT_EQ(found.levels[1].level, 2);
-  for (LevelMap& level : found.levels) {
-    testing::expect_bijective(level.charts);
-    expect_simple(level.layout);
-    for (const PatchMap& m : extract_patch_maps(level.charts, level.layout, surface.faces, Progress(context))) EXPECT_STREQ(find_map_defect(m), "");
-  }
 }
 
 }  // namespace

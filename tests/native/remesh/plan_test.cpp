@@ -87,7 +87,7 @@ TEST(Plan, ABaseChangedByHandIsAnotherOne) {
 // A plan as a person might write it: a cube for a ball, and a tower on one of its quads' children.
 TEST(Plan, ByHand) {
   Json plan = cube_plan();
-  plan["levels"] = Json::array({{{"level", 2}, {"operations", Json::array({{{"kind", "add_cubes"}, {"quads", {"1.0.2"}}, {"height", 2}}})}}});
+  plan["operations"] = Json::array({{{"level", 2}, {"quads", {"1.0.2"}}, {"layout", "cubes"}, {"height", 2}}});
   RemeshOptions options;
   options.levels = 4;
   const RemeshResult made = run(ball(24), options, plan.dump());
@@ -215,15 +215,16 @@ TEST_P(DrawnRegions, ProblemsAreNamedWhereTheyAre) {
 }
 
 TEST(Plan, AnOperationBeginsOnTheBoundaryOfItsQuads) {
+  RemeshOptions options;
+  options.levels = 2;
   for (int side = 0; side < 4; ++side) {
     Json plan = cube_plan();
     const Json star = {{0, 1, 2, 8}, {2, 3, 4, 8}, {4, 5, 6, 8}, {6, 7, 0, 8}};
-    plan["levels"] = {
-        {{"level", 1},
-         {"operations", {{{"kind", "repatch"}, {"quads", {"0.0", "0.1", "0.2", "0.3"}}, {"start", {"0.0", side}}, {"new_quads", star}}}}}};
-    const std::string said = refusal_of([&] { plan_from_json(plan.dump()); });
+    plan["operations"] = {
+        {{"level", 1}, {"quads", {"0.0", "0.1", "0.2", "0.3"}}, {"layout", "template"}, {"start", {"0.0", side}}, {"new_quads", star}}};
+    const std::string said = refusal_of([&] { run(ball(12), options, plan.dump()); });
     // Sides 1 and 2 lead to the middle of the four, and from it.
-    EXPECT_EQ(said.find("operations[0].start") != std::string::npos, side == 1 || side == 2) << said;
+    EXPECT_EQ(said.find("operations[0]") != std::string::npos, side == 1 || side == 2) << said;
     EXPECT_EQ(said.empty(), side == 0 || side == 3) << said;
   }
 }
@@ -258,10 +259,10 @@ TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_EQ(refused(good), "");
   EXPECT_THROW(plan_from_json("{"), Error);
   EXPECT_THROW(plan_from_json("[]"), Error);
-  std::size_t at = 0;
-  while (at < good["levels"].size() && good["levels"][at]["operations"].empty()) ++at;
-  ASSERT_LT(at, good["levels"].size());
-  const std::string operation = "levels[" + std::to_string(at) + "].operations[0]";
+  const Json& even = good["operations"][0];
+  EXPECT_EQ(even["layout"], "even");
+  EXPECT_EQ(even["level"], made.hierarchy.operation(0).repatch.level);
+  const std::string operation = "operations[0]";
   const std::vector<std::pair<std::string, std::function<void(Json&)>>> mistakes = {
       {"format", [](Json& p) { p["format"] = "a plan"; }},
       {"version", [](Json& p) { p["version"] = 0; }},
@@ -281,18 +282,40 @@ TEST(Plan, WhatIsWrongIsNamedWithItsPlace) {
        [](Json& p) {
          p["base"]["neighbours"][0][0] = {0, 3};
        }},
-      {operation + ".kind", [&](Json& p) { p["levels"][at]["operations"][0]["kind"] = "magic"; }},
-      {operation + ".quads[0]", [&](Json& p) { p["levels"][at]["operations"][0]["quads"][0] = "0.9"; }},
-      {operation, [&](Json& p) { p["levels"][at]["operations"][0]["quads"].erase(0); }},
-      {operation + ".new_quads", [&](Json& p) { p["levels"][at]["operations"][0]["new_quads"].erase(0); }},
-      {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 99; }},
-      // Billions of quads would have to have addresses before it is found that none of them is named.
-      {"levels[" + std::to_string(at) + "].level", [&](Json& p) { p["levels"][at]["level"] = 12; }},
+      {operation + ".layout", [](Json& p) { p["operations"][0]["layout"] = "magic"; }},
+      {operation + ".quads[0]", [](Json& p) { p["operations"][0]["quads"][0] = 7; }},
+      {operation + " has no \"start\"",
+       [](Json& p) {
+         p["operations"][0].erase("start");
+         p["operations"][0].erase("starts");
+       }},
+      {operation + ".nodes", [](Json& p) { p["operations"][0]["nodes"].erase(0); }},
+      {operation + ".sides[0].quad", [](Json& p) { p["operations"][0]["sides"][0]["quad"] = 99999; }},
+      {operation + ".new_quads[0]", [](Json& p) { p["operations"][0]["new_quads"][0].erase(0); }},
+      {operation + ".level", [](Json& p) { p["operations"][0]["level"] = 99; }},
   };
   for (const auto& [place, spoil] : mistakes) {
     Json bad = good;
     spoil(bad);
     EXPECT_NE(refused(bad).find(place), std::string::npos) << place << ": " << refused(bad);
+  }
+}
+
+TEST(Plan, WhatFitsNoQuadsIsNamedWithItsPlace) {
+  const PolygonSoup soup = spiked_ball(24);
+  const RemeshOptions options = options_of(BaseSize::Minimal, Refinement::Uniform);
+  const Json good = Json::parse(run(soup, options).plan);
+  const std::vector<std::pair<std::string, std::function<void(Json&)>>> mistakes = {
+      {"operations[0]: level", [](Json& p) { p["operations"][0]["quads"][0] = "0.9"; }},
+      {"operations[0]", [](Json& p) { p["operations"][0]["quads"].erase(0); }},
+      // Billions of quads would have to have addresses before it is found that none of them is named.
+      {"operations[0]: level 12", [](Json& p) { p["operations"][0]["level"] = 12; }},
+  };
+  for (const auto& [place, spoil] : mistakes) {
+    Json bad = good;
+    spoil(bad);
+    const std::string said = refusal_of([&] { run(soup, options, bad.dump()); });
+    EXPECT_NE(said.find(place), std::string::npos) << place << ": " << said;
   }
 }
 

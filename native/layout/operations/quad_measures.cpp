@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/operations/quad_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "parameterization/global_map.h"
+#include "parameterization/patch_energy.h"
+
+namespace hybrid_mesh {
+namespace {
+
+// A value for every quad of a level, of its map.
+template <class Value>
+std::vector<double> of_quads(const LevelState& state, const Value& value) {
+  // A map at a time: its quads are cut out of it together.
+  std::vector<std::vector<int>> groups;
+  std::vector<int> order(state.maps.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return state.maps[a].map < state.maps[b].map; });
+  for (const int q : order) {
+    if (groups.empty() || state.maps[groups.back().front()].map != state.maps[q].map) groups.emplace_back();
+    groups.back().push_back(q);
+  }
+  std::vector<double> out(state.maps.size());
+  parallel_for_each_index(static_cast<std::int64_t>(groups.size()), [&](std::int64_t g) {
+    const std::vector<PatchMap> maps = maps_of(state, groups[g]);
+    for (std::size_t k = 0; k < maps.size(); ++k) out[groups[g][k]] = value(maps[k]);
+  });
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> quad_energies(const LevelState& state) {
+  const double scale = std::sqrt(static_cast<double>(state.quads.patch_count()) / state.area), theta = GlobalMapOptions().theta;
+  return of_quads(state, [&](const PatchMap& map) { return map_energy(map, scale, theta); });
+}
+
+std::vector<double> quad_areas(const LevelState& state) {
+  return of_quads(state, [](const PatchMap& map) { return map_area(map); });
+}
+
+double largest_area_ratio(const LevelState& state) {
+  const std::vector<double> areas = quad_areas(state);
+  return *std::max_element(areas.begin(), areas.end()) * static_cast<double>(areas.size()) / state.area;
+}
+
+}  // namespace hybrid_mesh
