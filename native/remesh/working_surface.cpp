@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
+#include "layout/base/closed_components.h"
 #include "parameterization/patched_surface.h"
 #include "surface/edit_mesh.h"
 #include "surface/well_shaped.h"
@@ -36,6 +39,48 @@ void split_chords(WorkingSurface& surface) {
       any = true;
     }
     if (any) connect_half_edges(mesh);
+  }
+}
+
+// Closed components of few triangles have no room for the quads of a cube: their triangles are quartered until they have.
+bool quarter_small_components(WorkingSurface& surface, const TriangleSurface& placed) {
+  constexpr int enough = 64;
+  bool any = false;
+  for (;;) {
+    TriangleSurface& mesh = surface.mesh;
+    const ClosedComponents components = closed_components(EditMesh(mesh));
+    const auto is_small = [&](const std::array<int, 3>& f) { return components.of[f[0]] >= 0 && components.faces[components.of[f[0]]] < enough; };
+    if (std::none_of(mesh.faces.begin(), mesh.faces.end(), is_small)) return any;
+    if (!surface.query) surface.query = std::make_shared<const SurfaceDistanceQuery>(placed);
+    any = true;
+    std::map<std::pair<int, int>, int> middles;
+    std::vector<std::array<int, 3>> faces;
+    std::vector<int> source_face;
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const std::array<int, 3> c = mesh.faces[f];
+      const int source = mesh.source_face[f];
+      if (!is_small(c)) {
+        faces.push_back(c);
+        source_face.push_back(source);
+        continue;
+      }
+      std::array<int, 3> m;
+      for (int i = 0; i < 3; ++i) {
+        const auto [at, fresh] = middles.insert({std::minmax(c[i], c[(i + 1) % 3]), static_cast<int>(mesh.points.size())});
+        m[i] = at->second;
+        if (!fresh) continue;
+        mesh.points.push_back(0.5 * (mesh.points[c[i]] + mesh.points[c[(i + 1) % 3]]));
+        const ClosestPoint closest = surface.query->closest(mesh.points.back(), source);
+        surface.place.push_back({closest.face, closest.weights});
+      }
+      for (const std::array<int, 3>& quarter : {std::array{c[0], m[0], m[2]}, {c[1], m[1], m[0]}, {c[2], m[2], m[1]}, m}) {
+        faces.push_back(quarter);
+        source_face.push_back(source);
+      }
+    }
+    mesh.faces = std::move(faces);
+    mesh.source_face = std::move(source_face);
+    connect_half_edges(mesh);
   }
 }
 
@@ -113,8 +158,9 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   w.place = std::move(shaped.place);
   w.placement = placement;
   const bool has_boundary = std::find(placed.opposite.begin(), placed.opposite.end(), -1) != placed.opposite.end();
-  if (shaped.unchanged && !has_boundary) return w;  // every face is one of the repaired surface
-  w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
+  const bool quartered = quarter_small_components(w, placed);
+  if (shaped.unchanged && !has_boundary && !quartered) return w;  // every face is one of the repaired surface
+  if (!w.query) w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
   split_chords(w);
   return w;
 }

@@ -11,8 +11,13 @@
 #include <limits>
 #include <utility>
 
+#include "layout/base/closed_components.h"
+
 namespace hybrid_mesh {
 namespace {
+
+// Of a closed component: enough for its quads to be paired and cleaned up.
+constexpr int kLeastClosedFaces = 4 * kLeastClosedQuads;
 
 // The cheapest collapse that takes a vertex away; half_edge -1: there is none.
 struct Candidate {
@@ -39,7 +44,7 @@ double jitter(std::uint64_t seed, int v) {
 class Decimation {
  public:
   Decimation(EditMesh& mesh, const std::vector<Vec3>& points, const DecimationOptions& options, std::vector<MeshEdit>& log)
-      : mesh_(mesh), points_(points), options_(options), log_(log), quadrics_(points.size()) {
+      : mesh_(mesh), points_(points), options_(options), log_(log), quadrics_(points.size()), components_(closed_components(mesh)) {
     valences_.assign(points.size(), 0);
     if (options.fixed.empty()) loop_ = mesh.boundary_loops();
     if (std::all_of(loop_.begin(), loop_.end(), [](int loop) { return loop < 0; })) loop_.clear();
@@ -286,6 +291,10 @@ class Decimation {
   void collapse(int h) {
     if (!mesh_.can_collapse(h) || makes_chord(h, star_.around)) return;
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
+    if (const int c = components_.of[v]; c >= 0) {
+      if (components_.faces[c] - 2 < kLeastClosedFaces) return;
+      components_.faces[c] -= 2;
+    }
     valences_[u] += valences_[v] - (mesh_.is_boundary(v) ? 3 : 4);
     --valences_[mesh_.apex(h)];
     if (o >= 0) --valences_[mesh_.apex(o)];
@@ -346,6 +355,7 @@ class Decimation {
   const DecimationOptions& options_;
   std::vector<MeshEdit>& log_;
   std::vector<VertexQuadric> quadrics_;
+  ClosedComponents components_;
   std::vector<int> valences_;
   std::vector<Queued> queued_;
   std::vector<std::uint32_t> stamps_;  // of the last candidate, by vertex: earlier ones in the heap count for nothing

@@ -26,9 +26,9 @@ struct DecimationOptions {
 };
 
 // Collapses and flips `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are
-// left or nothing can be collapsed; every operation is appended to `log`. Vertices stay where they are, so that those left are points of the input.
-// Refuses an operation for topology alone; shape, evenness, valence and the distance to the surface enter through its cost.
-// Returns what each vertex left stands for.
+// left or nothing can be collapsed; closed components keep enough for the quads of a cube; every operation is appended to `log`. Vertices stay where
+// they are, so that those left are points of the input. Refuses an operation for topology alone; shape, evenness, valence and the distance to the
+// surface enter through its cost. Returns what each vertex left stands for.
 std::vector<VertexQuadric> decimate(EditMesh& mesh, const std::vector<Vec3>& points, const DecimationOptions& options, std::vector<MeshEdit>& log,
                                     const Progress& progress);
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "layout/base/closed_components.h"
 #include "layout/base/triangle_pairing.h"
 
 namespace hybrid_mesh {
@@ -23,7 +24,13 @@ class QuadCoarsening {
  public:
   QuadCoarsening(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,
                  std::vector<MeshEdit>& log)
-      : mesh_(mesh), points_(points), quadrics_(std::move(quadrics)), options_(options), log_(log) {}
+      : mesh_(mesh),
+        points_(points),
+        quadrics_(std::move(quadrics)),
+        options_(options),
+        log_(log),
+        components_(closed_components(mesh)),
+        finished_(components_.faces.size(), 0) {}
 
   QuadLayout run(const Progress& progress) {
     list_live();
@@ -35,16 +42,15 @@ class QuadCoarsening {
     int rounds = 0;
     while (size() > options_.size) {
       progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
-      // Few quads may clean each other away.
-      const bool last_ones = quad_count() < 2 * options_.least + 8;
-      const State before = last_ones ? state() : State{};
       if (!collapse_cheapest()) break;
-      clean();
-      if (!last_ones || quad_count() >= options_.least) continue;
-      restore(before);
-      break;
     }
-    if (quad_count() > options_.least) clean();
+    if (quad_count() > options_.least) {
+      const State before = state();
+      clean();
+      bool few = quad_count() < options_.least;
+      for (std::size_t c = 0; c < components_.faces.size(); ++c) few |= quads_of(static_cast<int>(c)) < kLeastClosedQuads;
+      if (few) restore(before);
+    }
     progress(1);
     return layout();
   }
@@ -105,6 +111,13 @@ class QuadCoarsening {
   int quad_count() const {
     int faces = 0;
     for (const int f : faces_) faces += is_pair(f) ? 1 : 2;
+    return faces / 2;
+  }
+  // Of a closed component.
+  int quads_of(int component) const {
+    int faces = 0;
+    for (const int f : faces_)
+      if (components_.of[mesh_.origin[3 * f]] == component) faces += is_pair(f) ? 1 : 2;
     return faces / 2;
   }
   double size() const {
@@ -314,6 +327,7 @@ class QuadCoarsening {
     return error / scale + 0.02 * longest / scale + 0.05 * std::max(0.0, total) + 0.03 * std::max(0.0, worst - 2) + 0.03 * valence;
   }
 
+  // Collapses the cheapest diagonal that leaves enough quads, and cleans up.
   bool collapse_cheapest() {
     std::vector<DiagonalCollapse> all;
     for (const int f : faces_) {
@@ -330,12 +344,25 @@ class QuadCoarsening {
     });
     for (const DiagonalCollapse& c : all) {
       if (c.cost >= 1e299) return false;
+      const int component = components_.of[c.from];
+      if (component >= 0 && finished_[component]) continue;
+      // Few quads may clean each other away.
+      constexpr int some = 8;
+      const bool last_ones = quad_count() < 2 * options_.least + some,
+                 last_of_component = component >= 0 && quads_of(component) < 2 * kLeastClosedQuads + some;
+      const State before = last_ones || last_of_component ? state() : State{};
       if (!diagonal_at(c.face, c.from)) continue;
       const int h = mesh_.find(c.from, c.to);
       if (h < 0 || !mesh_.can_collapse(h)) continue;
       collapse(h);
       drop_dead();
-      return true;
+      clean();
+      const bool too_few = last_ones && quad_count() < options_.least;
+      const bool component_is_done = last_of_component && quads_of(component) < kLeastClosedQuads;
+      if (!too_few && !component_is_done) return true;
+      restore(before);
+      if (too_few) return false;
+      finished_[component] = 1;
     }
     return false;
   }
@@ -402,6 +429,8 @@ class QuadCoarsening {
   std::vector<VertexQuadric> quadrics_;
   const QuadLayoutOptions& options_;
   std::vector<MeshEdit>& log_;
+  ClosedComponents components_;        // as the mesh was first
+  std::vector<char> finished_;         // per closed component: it has no quad to give away
   std::vector<int> faces_, vertices_;  // that are alive, see list_live()
   std::vector<int> mate_;              // per face: the other triangle of its quad, or itself
   std::vector<int> split_;             // per face that is its own mate: the boundary half-edge that holds the fourth node

@@ -70,6 +70,40 @@ TEST_P(RemeshKinds, AreAsGoodFarAwayAndAtAnyScale) {
   }
 }
 
+// Scans have crumbs beside them. What a cube's quads are cut into needs more triangles than a crumb has.
+TEST_P(RemeshKinds, KeepCrumbsOfAFewTriangles) {
+  PolygonSoup soup = ball(20);
+  const auto add = [&](const Vec3& at, double size, const std::vector<std::array<int, 3>>& faces) {
+    const int first = static_cast<int>(soup.points.size());
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.3, 0.3, 0.2), Vec3(0.3, 0.3, -0.7)})
+      soup.points.push_back(at + size * p);
+    for (const auto& f : faces) {
+      for (const int v : f) soup.indices.push_back(first + v);
+      soup.offsets.push_back(static_cast<std::int64_t>(soup.indices.size()));
+    }
+  };
+  add(Vec3(1.5, 0, 0), 0.02, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+  add(Vec3(0, 1.5, 0), 0.05, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}});
+  for (const BaseSize base : {BaseSize::Auto, BaseSize::Minimal}) {
+    RemeshOptions options;
+    options.vertices = 3000;
+    options.refinement = GetParam();
+    options.base = base;
+    Context context;
+    const RemeshResult made = remesh(soup, options, context);
+    EXPECT_TRUE(find_defects(made.hierarchy).empty());
+    for (int level = 0; level <= made.hierarchy.depth(); ++level) {
+      const TopologySummary t = summarize_topology(to_soup(made.hierarchy.level_mesh(level)));
+      EXPECT_EQ(t.components, 3);
+      EXPECT_EQ(t.genus, 0);
+      EXPECT_EQ(t.nonmanifold_edges + t.nonmanifold_vertices + t.misoriented_edges, 0);
+    }
+    if (base == BaseSize::Minimal) {
+      EXPECT_EQ(made.hierarchy.base_count(), 18);
+    }
+  }
+}
+
 // A ball with two spikes, of which a cube's quads have no skin to cover.
 PolygonSoup spiked_ball(int n) {
   PolygonSoup soup = ball(n);
