@@ -76,7 +76,9 @@ class LateOpening {
     std::optional<Opening> best;
     for (int margin = 0; margin <= kMostMargin && !(best && best->rise() <= kMostRise); ++margin) {
       std::optional<Opening> found = find(state, e, margin);
-      if (found && (!best || found->rise() < best->rise())) best = std::move(found);
+      if (!found) continue;
+      if (best && found->rise() >= best->rise()) break;  // more room makes it no better
+      best = std::move(found);
     }
     if (!best) return;
     if (best->rise() > kMostRise && !anyhow) {
@@ -122,6 +124,10 @@ class LateOpening {
 
 }  // namespace
 
-LateTopology open_late(Construction& made, const RemeshTask& task, const Budget& budget) { return LateOpening(made, task, budget.vertices).run(); }
+LateTopology open_late(Construction& made, const RemeshTask& task, const Budget& budget) {
+  // An adaptive mesh keeps no more of a fine level than what opens there.
+  const int finer = task.options.refinement == Refinement::Adaptive ? 4 : 1;
+  return LateOpening(made, task, finer * budget.vertices).run();
+}
 
 }  // namespace hybrid_mesh

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "layout/drawn/boundary_loop.h"
+#include "surface/boundary_loop.h"
 
 namespace hybrid_mesh {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "layout/drawn/boundary_loop.h"
+#include "surface/boundary_loop.h"
 #include "layout/drawn/layout_transfer.h"
 #include "layout/drawn/quad_complex.h"
 #include "layout/regions/region_layout.h"

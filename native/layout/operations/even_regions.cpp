@@ -16,13 +16,26 @@ double sum_over(const PatchRegion& region, const std::vector<double>& of) {
   return sum;
 }
 
-// Regions of quads of more energy than `least`, or than so much for the area that they cover; the smallest first.
-std::vector<PatchRegion> uneven_regions(const QuadGraph& s, const std::vector<double>& energy, const std::vector<double>& share, double least) {
+constexpr double kFewQuads = 12;  // of even size: with fewer a component has no better layout than that of its base
+
+// Regions of quads of more energy than `least`, or than so much for the area that they cover; the smallest first. `quads`: that even ones would be in
+// all.
+std::vector<PatchRegion> uneven_regions(const QuadGraph& s, const std::vector<double>& energy, const std::vector<double>& share, double least,
+                                        double quads) {
   std::vector<char> uneven(s.patch_count(), 0);
   for (int q = 0; q < s.patch_count(); ++q) uneven[q] = energy[q] > least || energy[q] > least * share[q] * s.patch_count();
   std::vector<char> wide = dilated(s, uneven);
-  // A region has a boundary: where all is uneven, the best stays.
-  if (std::find(wide.begin(), wide.end(), 0) == wide.end()) wide[std::min_element(energy.begin(), energy.end()) - energy.begin()] = 0;
+  for (const std::vector<int>& component : components(s, std::vector<char>(s.patch_count(), 1), 1)) {
+    double part = 0;
+    for (const int q : component) part += share[q];
+    if (part * quads < kFewQuads) {
+      for (const int q : component) wide[q] = 0;
+      continue;
+    }
+    // A region has a boundary: where all is uneven, the best stays.
+    if (std::all_of(component.begin(), component.end(), [&](int q) { return wide[q] == 1; }))
+      wide[*std::min_element(component.begin(), component.end(), [&](int a, int b) { return energy[a] < energy[b]; })] = 0;
+  }
   if (const std::vector<char> rim = boundary_nodes(s); std::find(rim.begin(), rim.end(), 1) != rim.end()) {
     open_to_loops(s, wide, energy);
     part_at_nodes(s, wide);
@@ -51,7 +64,7 @@ std::vector<RegionRepatch> find_even_regions(const LevelState& state, const Even
   std::vector<double> quads;
   // Quads that would do stay, unless there would be too many in all.
   for (const double part : {1.0, 0.5, 0.25, 0.0}) {
-    regions = uneven_regions(s, energy, share, part * options.uneven);
+    regions = uneven_regions(s, energy, share, part * options.uneven, options.quads);
     quads.clear();
     double count = s.patch_count();
     for (std::size_t i = 0; i < regions.size(); ++i) {

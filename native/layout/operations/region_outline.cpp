@@ -8,52 +8,11 @@
 #include <limits>
 #include <utility>
 
-#include "layout/drawn/boundary_loop.h"
 #include "layout/regions/disk_drawing.h"
+#include "surface/boundary_loop.h"
 
 namespace hybrid_mesh {
 namespace {
-
-// Shortest ways along edges to one vertex.
-class EdgeWays {
- public:
-  EdgeWays(const TriangleSurface& mesh, int to) : mesh_(mesh), distance_(edge_distances(mesh, {to})), beside_(mesh.points.size()) {
-    for (const auto& f : mesh.faces)
-      for (int i = 0; i < 3; ++i) {
-        beside_[f[i]].push_back(f[(i + 1) % 3]);
-        beside_[f[(i + 1) % 3]].push_back(f[i]);
-      }
-  }
-  std::vector<Vec3> from(int v) const {
-    std::vector<Vec3> way{mesh_.points[v]};
-    while (distance_[v] > 0) {
-      const int next = *std::min_element(beside_[v].begin(), beside_[v].end(), [&](int a, int b) { return through(v, a) < through(v, b); });
-      if (!(distance_[next] < distance_[v])) break;
-      way.push_back(mesh_.points[v = next]);
-    }
-    return way;
-  }
-
- private:
-  std::pair<double, int> through(int v, int next) const { return {distance_[next] + (mesh_.points[next] - mesh_.points[v]).norm(), next}; }
-
-  const TriangleSurface& mesh_;
-  std::vector<double> distance_;
-  std::vector<std::vector<int>> beside_;
-};
-
-// The point at a fraction of a line's length.
-Vec3 point_along(const std::vector<Vec3>& line, double fraction) {
-  double length = 0;
-  for (std::size_t k = 1; k < line.size(); ++k) length += (line[k] - line[k - 1]).norm();
-  double left = fraction * length;
-  for (std::size_t k = 1; k < line.size(); ++k) {
-    const double step = (line[k] - line[k - 1]).norm();
-    if (left <= step && step > 0) return line[k - 1] + left / step * (line[k] - line[k - 1]);
-    left -= step;
-  }
-  return line.back();
-}
 
 std::vector<int> corners_of(const RegionSurface& surface) {
   std::vector<int> corners;
@@ -75,32 +34,6 @@ const BoundaryLoop* open_loop(const std::vector<BoundaryLoop>& loops, const std:
     if (!any) return &loop;
   }
   return nullptr;
-}
-
-// Even places on a loop that runs the other way around than the corners, as near to them as can be.
-std::vector<double> opposite_arcs(const BoundaryLoop& loop, const std::vector<Vec3>& corners) {
-  constexpr int tries = 64;
-  const int n = static_cast<int>(corners.size());
-  const auto place = [&](double first, int i) {
-    const double arc = first - i * loop.length() / n;
-    return arc - std::floor(arc / loop.length()) * loop.length();
-  };
-  double best = std::numeric_limits<double>::infinity(), begin = 0;
-  for (int k = 0; k < tries; ++k) {
-    const double first = k * loop.length() / tries;
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += (loop.at(place(first, i)) - corners[i]).squaredNorm();
-    if (sum < best) best = sum, begin = first;
-  }
-  std::vector<double> arcs;
-  for (int i = 0; i < n; ++i) arcs.push_back(place(begin, i));
-  return arcs;
-}
-
-int vertex_before(const BoundaryLoop& loop, double arc) {
-  int i = 0;
-  while (i + 1 < loop.size() && loop.arc(i + 1) <= arc) ++i;
-  return loop.vertex(i);
 }
 
 // Springs along the quads' sides pull the nodes that have no place yet.
@@ -152,32 +85,13 @@ LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region) {
   return outline;
 }
 
-LayoutOutline spread_outline(const RegionSurface& surface, const LayoutEdit& edit, const std::vector<std::vector<int>>& spokes) {
-  const TriangleSurface& mesh = surface.mesh;
-  const std::vector<int> corner = corners_of(surface);
-  const int corners = static_cast<int>(corner.size());
+LayoutOutline spread_outline(const RegionSurface& surface, const LayoutEdit& edit) {
   LayoutOutline outline;
   outline.quads = edit.quads;
-  outline.nodes = points_at(mesh, corner);
-  outline.nodes.resize(corners + edit.inner_nodes, Vec3::Zero());
-  std::vector<char> placed(outline.nodes.size(), 0);
-  std::fill(placed.begin(), placed.begin() + corners, 1);
-  const std::vector<BoundaryLoop> loops = boundary_loops(mesh);
-  const BoundaryLoop* loop = open_loop(loops, corner);
-  std::vector<double> opposite;
-  if (loop) opposite = opposite_arcs(*loop, points_at(mesh, corner));
-  for (const std::vector<int>& spoke : spokes) {
-    const bool open = spoke.back() >= corners;
-    if (open && !loop) continue;
-    const int end = open ? vertex_before(*loop, opposite[spoke.front()]) : corner[spoke.back()];
-    std::vector<Vec3> way = EdgeWays(mesh, end).from(corner[spoke.front()]);
-    if (open) way.push_back(loop->at(opposite[spoke.front()]));
-    for (std::size_t i = 1; i < spoke.size(); ++i) {
-      if (spoke[i] < corners) continue;
-      outline.nodes[spoke[i]] = point_along(way, static_cast<double>(i) / static_cast<double>(spoke.size() - 1));
-      placed[spoke[i]] = 1;
-    }
-  }
+  outline.nodes = points_at(surface.mesh, corners_of(surface));
+  std::vector<char> placed(outline.nodes.size(), 1);
+  outline.nodes.resize(outline.nodes.size() + edit.inner_nodes, Vec3::Zero());
+  placed.resize(outline.nodes.size(), 0);
   spread(edit.quads, outline.nodes, placed);
   return outline;
 }

@@ -11,9 +11,8 @@ namespace hybrid_mesh {
 // Where the quads of a region's edit lie: their nodes, and lines of a few points along their sides.
 LayoutOutline outline_of(const DrawnEdit& drawn, const PatchRegion& region);
 
-// The same for an edit of which no lines are known: along shortest ways for chains of nodes that lead from one boundary of the region to another,
-// as `spokes` tells, and between these and the rims as evenly as in a spring's equilibrium. Nodes alone.
-LayoutOutline spread_outline(const RegionSurface& surface, const LayoutEdit& edit, const std::vector<std::vector<int>>& spokes);
+// The same for an edit of which no lines are known: nodes alone, between the rims as evenly as in a spring's equilibrium.
+LayoutOutline spread_outline(const RegionSurface& surface, const LayoutEdit& edit);
 
 // The region cut along the sides of an outline's quads; without patches if there is no way to lay them out.
 PatchedSurface lay_out_region(const RegionSurface& surface, LayoutOutline outline, const Progress& progress);

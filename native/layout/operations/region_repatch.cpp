@@ -17,6 +17,7 @@
 #include "layout/regions/patch_sets.h"
 #include "layout/regions/region_layout.h"
 #include "layout/regions/region_pattern.h"
+#include "layout/regions/ring_drawing.h"
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_energy.h"
@@ -103,15 +104,13 @@ DrawnEdit draw(const RegionSurface& surface, const LocalRegion& local, std::vect
 }
 
 // Rows of quads for an annulus. Where its boundaries are joined with the fewest sides may leave no room: then there are more rows.
-LayoutEdit rows_in(const RegionSurface& surface, const LocalRegion& local, int height, std::vector<std::vector<int>>& spokes,
-                   const Progress& progress) {
+LayoutEdit rows_in(const RegionSurface& surface, const LocalRegion& local, int height, std::vector<int>& spoke, const Progress& progress) {
   constexpr int tries = 3;
   if (!is_annulus(local.in_level)) throw Error(ErrorCode::InvalidInput, "rows need a region that is a ring, with two boundaries and no handle");
   const RowsPlace place = place_rows(surface, local.in_part);
   const int least = height > 0 ? height : place.rows;
   for (int more = 0;; ++more) {
-    spokes.clear();
-    LayoutEdit edit = rows_edit(local.level, local.in_level, least + more, place.shift, &spokes, progress);
+    LayoutEdit edit = rows_edit(local.level, local.in_level, least + more, place.shift, spoke, progress);
     const bool last = height > 0 || more + 1 == tries;
     if (last || (find_filling_defect(edit.quads, local.in_level).empty() && find_edit_defect(local.level, local.in_level, edit).empty())) return edit;
   }
@@ -136,8 +135,8 @@ std::optional<DrawnEdit> even_in(const RegionSurface& surface, const LocalRegion
   return std::nullopt;
 }
 
-// New quads that need no curves, by the part's numbers. Without a piece they may be drawn anywhere in a disk.
-DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
+// New quads that need no curves, by the part's numbers. `surface` may get further points.
+DrawnEdit find_edit(RegionSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
   using Kind = RegionPattern::Kind;
   const QuadGraph& level = local.level;
   const PatchRegion& region = local.in_level;
@@ -149,13 +148,13 @@ DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, cons
   if (kind == Kind::Even)
     if (std::optional<DrawnEdit> even = even_in(surface, local, pattern, progress)) return std::move(*even);
   LayoutEdit edit;
-  std::vector<std::vector<int>> spokes;
+  std::vector<int> spoke;  // of a ring
   if (kind == Kind::Automatic) {
     edit = automatic_edit(level, region, progress);
   } else if (kind == Kind::Template || kind == Kind::Even) {
     edit = template_edit(region, pattern.quads);
   } else if (kind == Kind::Rows) {
-    edit = rows_in(surface, local, pattern.height, spokes, progress);
+    edit = rows_in(surface, local, pattern.height, spoke, progress);
   } else {
     if (!region.is_disk()) throw Error(ErrorCode::InvalidInput, "cubes are grown on a disk of quads alone");
     edit = tower_edit(level, region, pattern.height > 0 ? pattern.height : std::max(1, tower_height(surface)));
@@ -167,8 +166,16 @@ DrawnEdit find_edit(const RegionSurface& surface, const LocalRegion& local, cons
   LayoutOutline outline = pattern.outline;
   outline.quads = pattern.quads;
   if (outline.nodes.empty()) {
-    if (region.is_disk()) return out;
-    outline = spread_outline(surface, out.edit, spokes);
+    if (region.is_disk()) {
+      out.piece = draw_quads(surface, out.edit);
+      return out;
+    }
+    if (is_annulus(region)) {
+      if (spoke.empty()) spoke = find_spoke(out.edit.quads, static_cast<int>(region.corners.size()), region.rims[1]);
+      out.piece = draw_ring(surface, out.edit, spoke);
+      return out;
+    }
+    outline = spread_outline(surface, out.edit);
   }
   out.piece = lay_out_region(surface, std::move(outline), progress);
   if (out.piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
@@ -274,7 +281,6 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
     out.outline = outline_of(edit, local.in_part);
     move_outline(out.outline, [&](const Vec3& p) { return state.placement.from_unit(p); });
   }
-  if (edit.piece.patch.empty()) edit.piece = draw_quads(surface, edit.edit);
   const LayoutChange change = apply_edit(part, std::move(edit), std::move(surface));
   map_patches(part.surface, change.added, part.corners, progress.part(0.4, 0.5));
 

@@ -167,7 +167,7 @@ bool has_rings(const PatchRegion& region) {
 namespace {
 
 // Rings from the first rim to the second, or to an open loop of as many sides.
-LayoutEdit ring_edit(const PatchRegion& region, int rows, int shift, std::vector<std::vector<int>>* spokes) {
+LayoutEdit ring_edit(const PatchRegion& region, int rows, int shift, std::vector<int>& spoke) {
   const int n = region.rims[1], all = static_cast<int>(region.corners.size());
   const bool open = all == n;
   LayoutEdit edit = edit_of(region);
@@ -179,15 +179,13 @@ LayoutEdit ring_edit(const PatchRegion& region, int rows, int shift, std::vector
   };
   for (int row = 0; row < rows; ++row)
     for (int i = 0; i < n; ++i) edit.quads.push_back({node(i, row), node(i + 1, row), node(i + 1, row + 1), node(i, row + 1)});
-  for (int i = 0; spokes && i < n; ++i) {
-    std::vector<int>& spoke = spokes->emplace_back();
-    for (int row = 0; row <= rows; ++row) spoke.push_back(node(i, row));
-  }
+  spoke.clear();
+  for (int row = 0; row <= rows; ++row) spoke.push_back(node(0, row));
   return edit;
 }
 
 // An annulus between two rims cut open from corner 0 of the first to corner `shift` of the second, filled as a disk, and closed again.
-LayoutEdit cut_annulus_edit(const QuadGraph& graph, const PatchRegion& region, int rows, int shift, std::vector<std::vector<int>>* spokes,
+LayoutEdit cut_annulus_edit(const QuadGraph& graph, const PatchRegion& region, int rows, int shift, std::vector<int>& spoke,
                             const Progress& progress) {
   const int n = region.rims[1], all = static_cast<int>(region.corners.size()), m = all - n;
   const std::vector<int> wanted = regular_quads(graph, region);
@@ -216,17 +214,16 @@ LayoutEdit cut_annulus_edit(const QuadGraph& graph, const PatchRegion& region, i
     for (int& k : quad) k = k < around ? node[k] : all + rows - 1 + k - around;
     edit.quads.push_back(quad);
   }
-  if (spokes) spokes->push_back(std::move(cut));
+  spoke = std::move(cut);
   return edit;
 }
 
 }  // namespace
 
-LayoutEdit rows_edit(const QuadGraph& graph, const PatchRegion& region, int rows, int shift, std::vector<std::vector<int>>* spokes,
-                     const Progress& progress) {
+LayoutEdit rows_edit(const QuadGraph& graph, const PatchRegion& region, int rows, int shift, std::vector<int>& spoke, const Progress& progress) {
   if (!is_annulus(region)) throw Error(ErrorCode::InvalidInput, "rows need a region that is a ring, with two boundaries and no handle");
-  if (has_rings(region)) return ring_edit(region, rows, shift, spokes);
-  return cut_annulus_edit(graph, region, rows, shift, spokes, progress);
+  if (has_rings(region)) return ring_edit(region, rows, shift, spoke);
+  return cut_annulus_edit(graph, region, rows, shift, spoke, progress);
 }
 
 LayoutEdit template_edit(const PatchRegion& region, std::vector<std::array<int, 4>> quads) {

@@ -25,10 +25,9 @@ LayoutEdit automatic_edit(const QuadGraph& graph, const PatchRegion& region, con
 
 // Quads in rows for an annulus: from one rim to the other, `rows` of them, or from its rim to its open loop. Where the two have the same number of
 // sides the rows are rings, and corner `shift` - i (counted on the second rim) is joined to corner i of the first; else they are joined at corners 0
-// and `shift`, and the rest is filled as automatic_edit() would. `spokes`, if asked for, gets the nodes along ways from one boundary to the other.
+// and `shift`, and the rest is filled as automatic_edit() would. `spoke` gets the nodes along the way from corner 0 to the other boundary.
 // Throws Error{InvalidInput} for another region, or an odd number of boundary sides.
-LayoutEdit rows_edit(const QuadGraph& graph, const PatchRegion& region, int rows, int shift, std::vector<std::vector<int>>* spokes,
-                     const Progress& progress);
+LayoutEdit rows_edit(const QuadGraph& graph, const PatchRegion& region, int rows, int shift, std::vector<int>& spoke, const Progress& progress);
 bool is_annulus(const PatchRegion& region);
 // Whether the rows would be rings.
 bool has_rings(const PatchRegion& region);

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "generated_surfaces.h"
-#include "layout/drawn/boundary_loop.h"
+#include "surface/boundary_loop.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "shapes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "layout/drawn/boundary_loop.h"
+#include "surface/boundary_loop.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
