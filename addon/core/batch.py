@@ -148,7 +148,7 @@ class Batch:
         job = {
             "kind": "remesh", "path": item.path, "object": item.object_name, "arrays": item.arrays, "name": item.name, "folder": folder,
             "settings": options.settings.native(), "exports": list(options.outputs.exports), "repaired": options.outputs.repaired,
-            "hash": fingerprint,
+            "levels": list(options.outputs.levels), "hash": fingerprint,
         }  # fmt: skip
         report = self.processes.run(job, options.timeout)["report"]
         if options.outputs.blend:
@@ -158,7 +158,7 @@ class Batch:
                 "target": stem + ".blend",
             }  # fmt: skip
             self.processes.run(job, options.timeout, needs_bpy=True)
-        for suffix in options.outputs.suffixes():
+        for suffix in (*options.outputs.level_suffixes(len(report.get("levels", []))), *options.outputs.suffixes()):
             os.replace(os.path.join(folder, item.name + suffix), os.path.join(options.folder, item.name + suffix))
         shutil.rmtree(folder, ignore_errors=True)
         return "done", report
@@ -173,7 +173,10 @@ class Batch:
                 report = json.load(file)
         except (OSError, ValueError):
             return None
-        return report if isinstance(report, dict) and report.get("hash") == fingerprint and "error" not in report else None
+        if not isinstance(report, dict) or report.get("hash") != fingerprint or "error" in report:
+            return None
+        levels = self.options.outputs.level_suffixes(len(report.get("levels", [])))
+        return report if all(os.path.isfile(os.path.join(self.options.folder, item.name + suffix)) for suffix in levels) else None
 
     def _failed(self, item, cause):
         if self.processes.ended:

@@ -17,7 +17,7 @@ from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
 LATER_COMMANDS = ("encode", "decode", "bench")
-LATER_OPTIONS = ("--symmetry", "--features", "--topology")
+LATER_OPTIONS = ("--symmetry", "--features")
 PROGRAM = "hybrid-mesh"
 
 
@@ -97,7 +97,7 @@ def _settings(arguments):
 
 def remesh(arguments):
     settings = _settings(arguments)
-    outputs = input_files.Outputs(exports=arguments.export, repaired=arguments.export_repaired, blend=arguments.blend)
+    outputs = input_files.Outputs(exports=arguments.export, repaired=arguments.export_repaired, blend=arguments.blend, levels=arguments.export_levels)
     if not bpy_available():
         for path in arguments.inputs:
             if input_files.is_blend(path):
@@ -199,6 +199,7 @@ def _parser():
     surface.add_argument("--strict", action="store_true", help="refuse input that needs repair")
     written = command.add_argument_group("output")
     written.add_argument("--export", type=_exports, default=(), metavar="ply,obj", help="write the final mesh in these formats")
+    written.add_argument("--export-levels", type=_exports, default=(), metavar="ply,obj", help="write every level too, as NAME.N0.ply, NAME.N1.ply, ...")
     written.add_argument("--export-repaired", action="store_true", help="write the repaired input too")
     written.add_argument("--blend", action="store_true", help="write NAME.blend with the levels (in Blender)")
     running = command.add_argument_group("running")

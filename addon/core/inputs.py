@@ -4,6 +4,8 @@
 import os
 from dataclasses import dataclass, field
 
+from .limits import limits
+
 MESH_EXTENSIONS = (".ply", ".obj", ".off", ".stl")
 EXPORT_FORMATS = ("ply", "obj")
 
@@ -32,6 +34,7 @@ class Outputs:
     exports: tuple = ()
     repaired: bool = False
     blend: bool = False
+    levels: tuple = ()  # formats in which every level is written
     report: str = field(default=".report.json", init=False)
 
     def suffixes(self):
@@ -43,6 +46,10 @@ class Outputs:
         if self.blend:
             suffixes.append(".blend")
         return [*suffixes, self.report]
+
+    def level_suffixes(self, count):
+        """Of the levels' files, with so many levels."""
+        return [f".N{level}.{form}" for level in range(count) for form in self.levels]
 
 
 def is_blend(path):
@@ -73,9 +80,10 @@ def file_name(name):
 def refuse_clashes(items, outputs, folder):
     """Raises InputsError where two inputs would write one file, or one would overwrite an input."""
     sources = {_identity(item.path): item.path for item in items}
+    most_levels = limits().most_levels if outputs.levels else 0
     made = {}
     for item in items:
-        for suffix in outputs.suffixes():
+        for suffix in (*outputs.suffixes(), *outputs.level_suffixes(most_levels + 1)):
             target = os.path.join(folder, item.name + suffix)
             key = os.path.normcase(target)
             if key in made:

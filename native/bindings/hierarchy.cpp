@@ -53,7 +53,7 @@ Level find_level(const HybridMesh& mesh, const std::string& name) {
   throw Error(ErrorCode::InvalidInput, "there is no level " + name);
 }
 
-// Counts of a mesh for info().
+// Counts of a mesh for info(), and its topology.
 nlohmann::ordered_json counts_of(const QuadMesh& mesh) {
   std::int64_t quads = 0, triangles = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -61,7 +61,14 @@ nlohmann::ordered_json counts_of(const QuadMesh& mesh) {
     quads += corners == 4;
     triangles += corners == 3;
   }
-  return {{"vertices", mesh.vertex_count()}, {"faces", mesh.face_count()}, {"quads", quads}, {"triangles", triangles}};
+  const TopologySummary topology = summarize_topology(to_soup(mesh));
+  return {{"vertices", mesh.vertex_count()},
+          {"faces", mesh.face_count()},
+          {"quads", quads},
+          {"triangles", triangles},
+          {"genus", topology.genus},
+          {"components", topology.components},
+          {"boundary_loops", topology.boundary_loops}};
 }
 
 std::string info(const HybridMesh& mesh) {
@@ -77,16 +84,30 @@ std::string info(const HybridMesh& mesh) {
     levels.push_back(entry);
   }
   result["levels"] = levels;
-  const QuadMesh final_mesh = mesh.final_mesh();
-  result["final"] = counts_of(final_mesh);
-  const TopologySummary topology = summarize_topology(to_soup(final_mesh));
-  result["final"]["genus"] = topology.genus;
-  result["final"]["components"] = topology.components;
-  result["final"]["boundary_loops"] = topology.boundary_loops;
+  result["final"] = counts_of(mesh.final_mesh());
   return result.dump();
 }
 
-// Broken invariants of the hierarchy, its maps and its final mesh.
+// Adds what is wrong with a mesh. Returns its topology.
+TopologySummary check_mesh(const QuadMesh& mesh, const std::string& name, std::vector<std::string>& defects) {
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (!mesh.points[v].allFinite()) defects.push_back("vertex " + std::to_string(v) + " of " + name + " is not finite");
+  const TopologySummary topology = summarize_topology(to_soup(mesh));
+  const auto count = [&](std::int64_t number, const char* what) {
+    if (number != 0) defects.push_back(name + " has " + std::to_string(number) + " " + what);
+  };
+  count(topology.nonmanifold_edges, "edges of more than two faces");
+  count(topology.nonmanifold_vertices, "vertices of more than one fan");
+  count(topology.misoriented_edges, "edges with faces of opposite orientation");
+  return topology;
+}
+
+bool same_topology(const TopologySummary& a, const TopologySummary& b) {
+  return a.genus == b.genus && a.components == b.components && a.boundary_loops == b.boundary_loops;
+}
+
+// Broken invariants of the hierarchy and its maps; of its levels, whose topology is that of the one before but where operations are between them; and
+// of its final mesh.
 std::vector<std::string> check(const HybridMesh& mesh) {
   std::vector<std::string> defects = find_defects(mesh);
   for (int node = 0; node < mesh.node_count(); ++node) {
@@ -95,17 +116,18 @@ std::vector<std::string> check(const HybridMesh& mesh) {
     if (!defect.empty()) defects.push_back("the map of node " + std::to_string(node) + ": " + defect);
   }
   if (!defects.empty()) return defects;
-  const QuadMesh final_mesh = mesh.final_mesh();
-  for (std::size_t v = 0; v < final_mesh.points.size(); ++v) {
-    if (!final_mesh.points[v].allFinite()) defects.push_back("vertex " + std::to_string(v) + " of the final mesh is not finite");
+  std::optional<TopologySummary> before;
+  LevelKind last = LevelKind::N;
+  for (const Level& level : levels_of(mesh)) {
+    const TopologySummary topology = check_mesh(mesh.level_mesh(level.number, level.kind), "level " + level.name(), defects);
+    // Operations are between an M and its N alone.
+    if (before && last == LevelKind::N && !same_topology(topology, *before))
+      defects.push_back("level " + level.name() + " has another topology than the one before");
+    before = topology;
+    last = level.kind;
   }
-  const TopologySummary topology = summarize_topology(to_soup(final_mesh));
-  const auto count = [&](std::int64_t number, const char* what) {
-    if (number != 0) defects.push_back("the final mesh has " + std::to_string(number) + " " + what);
-  };
-  count(topology.nonmanifold_edges, "edges of more than two faces");
-  count(topology.nonmanifold_vertices, "vertices of more than one fan");
-  count(topology.misoriented_edges, "edges with faces of opposite orientation");
+  const TopologySummary topology = check_mesh(mesh.final_mesh(), "the final mesh", defects);
+  if (!same_topology(topology, *before)) defects.push_back("the final mesh has another topology than the finest level");
   return defects;
 }
 

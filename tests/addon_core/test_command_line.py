@@ -39,6 +39,24 @@ def test_exports(command_line):
     ]  # fmt: skip
 
 
+def test_every_level_is_exported(command_line):
+    command = ("remesh", command_line.box("box.obj"), "--output", "out", "--levels", 2, "--export-levels", "ply,obj")
+    assert command_line.run(*command).returncode == 0
+    levels = [f"box.N{level}.{form}" for level in range(3) for form in ("obj", "ply")]
+    assert command_line.outputs() == sorted(["box.hmesh", "box.plan.json", "box.report.json", "summary.csv", *levels])
+    assert "skipped" in command_line.run(*command, "--resume").out
+    (command_line.folder / "out" / "box.N1.ply").unlink()
+    assert "skipped" not in command_line.run(*command, "--resume").out
+    assert command_line.outputs() == sorted(["box.hmesh", "box.plan.json", "box.report.json", "summary.csv", *levels])
+
+
+@pytest.mark.parametrize("option, values", [("topology", ("auto", "late", "base")), ("components", ("apart", "joined"))])
+def test_topology_is_a_setting(command_line, option, values):
+    for value in values:
+        assert command_line.run("remesh", command_line.box("box.obj"), "--output", "out", f"--{option}", value).returncode == 0
+        assert report(command_line, "box")["settings"].get(option, values[0]) == value
+
+
 def test_a_plan_is_passed_on_and_known_to_a_resumed_run(command_line):
     first = command_line.run("remesh", command_line.box("box.obj"), "--output", "out")
     assert first.returncode == 0

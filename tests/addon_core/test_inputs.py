@@ -33,6 +33,13 @@ def test_an_export_never_overwrites_an_input(tmp_path):
         inputs.refuse_clashes(items, Outputs(("ply",)), str(tmp_path))
 
 
+def test_a_level_never_overwrites_an_input(tmp_path):
+    items = [Input(str(tmp_path / "a.N2.ply"), "a.N2"), Input("a.obj", "a")]
+    inputs.refuse_clashes(items, Outputs(), str(tmp_path))
+    with pytest.raises(InputsError, match="overwritten"):
+        inputs.refuse_clashes(items, Outputs(levels=("ply",)), str(tmp_path))
+
+
 def test_what_is_no_mesh_file_says_so(tmp_path):
     assert "folder" in inputs.file_input(str(tmp_path)).error
     assert ".ply" in inputs.file_input("a.txt").error
