@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kQuadsAround = 4;  // of a loop that opens: with fewer the tube is a pinch
 constexpr double kMostRise = 0.3;   // of energy a new quad: above it they are far from square, and a finer level has better ones
+constexpr double kWorstRise = 10;   // ... above which the mesh would be a wreck there: it is not opened
 constexpr int kMostMargin = 2;      // rings of quads beside what covers it
 
 class LateOpening {
@@ -29,6 +30,7 @@ class LateOpening {
       if (closed().empty()) break;
       if (!last) made_.refine();
       covering_.clear();
+      finer_covering_.clear();
     }
     for (const int e : closed()) out_.unopened.push_back({e, reasons_[e]});
     return std::move(out_);
@@ -72,16 +74,9 @@ class LateOpening {
   // Opens it where that leaves good quads, close to its caps or with more room around; `anyhow`: also where it does not, in the best way.
   void try_to_open(int e, bool anyhow) {
     const LevelState state = made_.state();
-    if (covering_.empty()) covering_ = covering_quads(state);
-    std::optional<Opening> best;
-    for (int margin = 0; margin <= kMostMargin && !(best && best->rise() <= kMostRise); ++margin) {
-      std::optional<Opening> found = find(state, e, margin);
-      if (!found) continue;
-      if (best && found->rise() >= best->rise()) break;  // more room makes it no better
-      best = std::move(found);
-    }
+    std::optional<Opening> best = best_opening(state, covering_, e);
     if (!best) return;
-    if (best->rise() > kMostRise && !anyhow) {
+    if (best->rise() > kWorstRise || (best->rise() > kMostRise && !anyhow && is_better_finer(state, e, best->rise()))) {
       reasons_[e] = "its quads would be distorted";
       return;
     }
@@ -92,10 +87,29 @@ class LateOpening {
     out_.regions.push_back(std::move(planned));
     made_.apply(std::move(best->mapped));
     covering_.clear();  // its quads have other numbers now
+    finer_covering_.clear();
   }
 
-  std::optional<Opening> find(const LevelState& state, int e, int margin) {
-    const Found<RegionRepatch> region = find_opening(state, covering_, e, margin);
+  std::optional<Opening> best_opening(const LevelState& state, CoveringQuads& covering, int e) {
+    if (covering.empty()) covering = covering_quads(state);
+    std::optional<Opening> best;
+    for (int margin = 0; margin <= kMostMargin && !(best && best->rise() <= kMostRise); ++margin) {
+      std::optional<Opening> found = find(state, covering, e, margin);
+      if (!found) continue;
+      if (best && found->rise() >= best->rise()) break;  // more room makes it no better
+      best = std::move(found);
+    }
+    return best;
+  }
+
+  // Would it leave better quads on the next level? Where what opens is wide beside its quads a finer level has more of them to distort.
+  bool is_better_finer(const LevelState& state, int e, double rise) {
+    const std::optional<Opening> finer = best_opening(quadrisected(state), finer_covering_, e);
+    return finer && finer->rise() < rise;
+  }
+
+  std::optional<Opening> find(const LevelState& state, const CoveringQuads& covering, int e, int margin) {
+    const Found<RegionRepatch> region = find_opening(state, covering, e, margin);
     reasons_[e] = region.reason;
     if (!region) return std::nullopt;
     try {
@@ -118,7 +132,7 @@ class LateOpening {
   const RemeshTask& task_;
   std::int64_t most_quads_;
   std::vector<std::string> reasons_;
-  CoveringQuads covering_;  // of the level as it is; empty: not known
+  CoveringQuads covering_, finer_covering_;  // of the level as it is, and of its quads' quadrants; empty: not known
   LateTopology out_;
 };
 
