@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "surface/boundary_loop.h"
 #include "layout/drawn/layout_transfer.h"
 #include "layout/drawn/quad_complex.h"
 #include "layout/regions/region_layout.h"
+#include "surface/boundary_loop.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "base/error.h"
 #include "generated_surfaces.h"
-#include "surface/boundary_loop.h"
 #include "layouts.h"
 #include "parameterization/initial_map.h"
 #include "shapes.h"
+#include "surface/boundary_loop.h"
 
 namespace hybrid_mesh {
 namespace {
