@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import json
+
 import numpy as np
 import pytest
 from hybrid_mesh import _native
@@ -80,3 +82,30 @@ def test_noise_is_closed():
 def test_a_mesh_that_cannot_be_used():
     with pytest.raises(_native.InvalidInput):
         _native.find_loops(*mesh_of([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]))
+
+
+def side_by_side(shapes):
+    points, offsets, indices, first = [], [np.zeros(1, np.int64)], [], 0
+    for number, (own, own_offsets, own_indices) in enumerate(shapes):
+        points.append(own + [3.5 * (number % 2), 3.5 * (number // 2), 0])
+        offsets.append(np.asarray(own_offsets[1:]) + offsets[-1][-1])
+        indices.append(np.asarray(own_indices) + first)
+        first += len(own)
+    return np.concatenate(points), np.concatenate(offsets), np.concatenate(indices)
+
+
+@pytest.mark.parametrize("refinement", ["uniform", "adaptive"])
+def test_components_and_handles_of_one_ball(refinement):
+    """Tori and balls joined to one component, of which a ball's base is made: they part, and their handles open, on finer levels."""
+    mesh = side_by_side([torus(30, 15), sphere(8), torus(30, 15), sphere(8), torus(30, 15)])
+    result = _native.remesh(*mesh, {"vertices": 6000, "refinement": refinement, "base": "min", "topology": "late", "components": "joined"})
+    report = json.loads(result.report)
+    levels = report["levels"]
+    assert (levels[0]["components"], levels[0]["genus"], levels[0]["quads"]) == (1, 0, 6)
+    assert (levels[-1]["components"], levels[-1]["genus"]) == (5, 3)
+    assert len({(level["components"], level["genus"]) for level in levels}) > 1
+    assert result.hierarchy.check() == []
+    told = json.loads(result.hierarchy.info())["levels"]
+    assert [(level["components"], level["genus"]) for level in told if level["name"].startswith("N")] == [
+        (level["components"], level["genus"]) for level in levels
+    ]
