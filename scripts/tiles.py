@@ -12,6 +12,7 @@ REGION, BUFFER = numpy.array([0.82, 0.30, 0.24]), numpy.array([0.93, 0.76, 0.36]
 INK, STROKE = (0.03, 0.035, 0.05, 1), (0.01, 0.08, 0.60, 1)
 STEP = 2.3  # between the middles of two tiles; what is shown in one is two units large
 ROW = 1.14 * STEP
+LETTER = 0.17  # height of a line of text
 
 
 def coordinates(mesh):
@@ -97,7 +98,7 @@ def balls(places, radius, ink):
 
 
 class Tile:
-    """A text, and data-blocks in one space. `around`: (n, 3) points of that space which the tile is filled by."""
+    """A text of one line or more, and data-blocks in one space. `around`: (n, 3) points of that space which the tile is filled by."""
 
     def __init__(self, text, blocks, around):
         self.text, self.blocks, self.around = text, blocks, around
@@ -116,14 +117,17 @@ class Sheet:
         made.materials.append(self.quads)
         return made
 
-    def render(self, tiles, columns, path, samples=None, scene_path=None, turn=picture.TURN, percent=100):
-        """Puts tiles side by side, each turned by so much about the vertical, and renders them, at a percentage of the full size; saves the scene if asked."""
+    def render(self, tiles, columns, path, samples=None, scene_path=None, turn=picture.TURN, percent=100, wide=1.0):
+        """Puts tiles side by side, each turned by so much about the vertical, and renders them, at a percentage of the full size; saves the scene if asked.
+
+        wide: of a tile, for what is taller than wide.
+        """
         scene = bpy.context.scene
         for obj in scene.objects:
             obj.hide_render = True
             obj.hide_set(True)
-        collection, rows = self._arranged(tiles, columns, turn)
-        picture.light_and_camera(collection, columns, rows, STEP)
+        collection, rows = self._arranged(tiles, columns, turn, wide)
+        picture.light_and_camera(collection, columns, rows, STEP, wide)
         scene.cycles.samples = samples or picture.SAMPLES
         scene.render.resolution_percentage = percent
         scene.render.filepath = os.path.abspath(path)
@@ -131,20 +135,21 @@ class Sheet:
         if scene_path:
             bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(scene_path), compress=True)
 
-    def _arranged(self, tiles, columns, turn):
+    def _arranged(self, tiles, columns, turn, wide):
         collection = bpy.data.collections.new("Side by side")
         bpy.context.scene.collection.children.link(collection)
         rows = -(-len(tiles) // columns)
         rotation = numpy.array([[numpy.cos(turn), -numpy.sin(turn), 0], [numpy.sin(turn), numpy.cos(turn), 0], [0, 0, 1]])
         for number, tile in enumerate(tiles):
-            x, z = (number % columns - (columns - 1) / 2) * STEP, ((rows - 1) / 2 - number // columns) * ROW
+            x, z = (number % columns - (columns - 1) / 2) * wide * STEP, ((rows - 1) / 2 - number // columns) * ROW
             around = tile.around @ rotation.T
             size = 2.0 / numpy.ptp(around[:, [0, 2]], axis=0).max()
             middle = size * (around.min(axis=0) + around.max(axis=0)) / 2
             for block in tile.blocks:
-                obj = bpy.data.objects.new(tile.text, block)
+                obj = bpy.data.objects.new(tile.text.replace("\n", ", "), block)
                 obj.rotation_euler, obj.scale = (0, 0, turn), (size, size, size)
                 obj.location = (x - middle[0], -middle[1], z - middle[2])
                 collection.objects.link(obj)
-            collection.objects.link(picture.label(tile.text, (x, -4, z - 0.56 * STEP), 0.17, self.ink))
+            lines = tile.text.count("\n")  # above the last one, which stays where a single one is
+            collection.objects.link(picture.label(tile.text, (x, -4, z - 0.56 * STEP + LETTER * lines), LETTER, self.ink))
         return collection, rows
