@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Inside Blender: a picture of how topology opens in a hierarchy: its base, the level below the first one on which something opens, each level on
-which something does, and the last one, with the loops that are closed and those that are open. With --close it shows what is around single loops
-instead, before and after they open on their level.
+which something does, and the last one, with the loops that are closed and those that are open.
 
 blender --background --factory-startup --python opening_picture.py -- STAGE FOLDER/NAME.blend PICTURE.png [OPTIONS]
 
 NAME.blend is what `remesh --blend` writes, NAME.plan.json and NAME.report.json are beside it."""
 
 import argparse
-import collections
 import json
 import os
 import sys
@@ -19,11 +17,9 @@ import numpy
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import levels_picture as picture  # noqa: E402
 import tiles  # noqa: E402
-from tiles import attribute, coordinates  # noqa: E402
+from tiles import coordinates  # noqa: E402
 
 CLOSED, OPEN = (0.72, 0.05, 0.03, 1), tiles.STROKE
-CLOSE, REACH = 2.2, 0.7  # what is shown around a loop, of its own radius; what fills the tile, of this
-SCRAP = 0.1  # of the faces around a loop: smaller pieces are left out
 RADIUS = 0.009  # of a loop's tube, of what a tile shows
 NARROWEST = 0.64  # of a tile, which the text needs
 UNDER = 0.05  # room between a mesh and the two lines of text, of its height
@@ -34,7 +30,6 @@ def parsed():
     parser.add_argument("stage")
     parser.add_argument("hierarchy")
     parser.add_argument("picture")
-    parser.add_argument("--close", nargs="+", type=int, default=[], metavar="LOOP", help="what is around these alone, by their places in the plan's topology")
     parser.add_argument("--turn", type=float, default=numpy.degrees(picture.TURN), metavar="DEGREES", help="about the vertical")
     parser.add_argument("--samples", type=int, default=64, help="of the picture's pixels")
     parser.add_argument("--percent", type=int, default=100, help="of the picture's full size")
@@ -79,43 +74,6 @@ def whole_tiles(sheet, inks, objects, levels, events):
     return shown
 
 
-def without_scraps(mesh, faces):
-    """Some of a mesh's faces without those that hang together with few others of them only: what a ball cuts off nearby."""
-    piece = {int(vertex): int(vertex) for face in faces for vertex in mesh.polygons[face].vertices}
-
-    def root(vertex):
-        while piece[vertex] != vertex:
-            piece[vertex] = vertex = piece[piece[vertex]]
-        return vertex
-
-    for face in faces:
-        first, *others = mesh.polygons[face].vertices
-        for vertex in others:
-            piece[root(vertex)] = root(first)
-    roots = [root(mesh.polygons[face].vertices[0]) for face in faces]
-    sizes = collections.Counter(roots)
-    return [face for face, where in zip(faces, roots) if sizes[where] >= SCRAP * len(faces)]
-
-
-def close_tiles(sheet, inks, objects, events, numbers):
-    """Two tiles a loop: the quads around it on its level, as regular refinement has them and as they are when it has opened."""
-    shown = []
-    for loops, level in (events[number] for number in numbers):
-        points = numpy.concatenate(loops)
-        middle = points.mean(axis=0)
-        radius = CLOSE * numpy.linalg.norm(points - middle, axis=1).max()
-        around = middle + REACH * radius * numpy.array([[-1, -1, -1], [1, 1, 1]])
-        around = numpy.stack(numpy.meshgrid(*around.T), axis=-1).reshape(-1, 3)
-        for is_open, name in ((False, f"M{level}"), (True, f"N{level}")):
-            mesh = objects[name].data
-            near = numpy.linalg.norm(coordinates(mesh) - middle, axis=1) < radius
-            faces = without_scraps(mesh, [polygon.index for polygon in mesh.polygons if near[list(polygon.vertices)].all()])
-            quads = sheet.shown(tiles.part(mesh, faces), 2 * radius, colors=picture.pastels(attribute(mesh, "patch")[faces]))
-            text = f"N{level}, {'open' if is_open else 'still closed'}"
-            shown.append(tiles.Tile(text, [quads, tiles.tubes(loops, 2 * RADIUS * radius, inks[is_open])], around))
-    return shown
-
-
 def main():
     arguments = parsed()
     sys.path.insert(0, arguments.stage)
@@ -130,10 +88,7 @@ def main():
     events = closed_loops(plan, numpy.array(objects["N0"].matrix_world.inverted()))
     sheet = tiles.Sheet()
     inks = {False: picture.plain_material("Closed", CLOSED), True: sheet.stroke}
-    if arguments.close:
-        shown = close_tiles(sheet, inks, objects, events, arguments.close)
-    else:
-        shown = whole_tiles(sheet, inks, objects, levels, events)
+    shown = whole_tiles(sheet, inks, objects, levels, events)
     turn, wide = numpy.radians(arguments.turn), NARROWEST
     for tile in shown:
         print(tile.text.replace("\n", ", "))
