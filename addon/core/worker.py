@@ -55,10 +55,11 @@ def remesh(job):
         final = result.final_mesh()
         for form in job["exports"]:
             module.write_mesh(f"{stem}.{form}", final["points"], final["offsets"], final["indices"])
-    for level in range(len(report.get("levels", []))) if job["levels"] else ():
-        mesh = result.hierarchy.level(f"N{level}")
-        for form in job["levels"]:
-            module.write_mesh(f"{stem}.N{level}.{form}", mesh["points"], mesh["offsets"], mesh["indices"])
+    if job["levels"]:
+        for number in range(len(report.get("levels", []))):
+            level = result.hierarchy.level(f"N{number}")
+            for form in job["levels"]:
+                module.write_mesh(f"{stem}.N{number}.{form}", level["points"], level["offsets"], level["indices"])
     if job["repaired"]:
         repaired = result.repaired()[:3]
         for form in job["exports"] or ["ply"]:

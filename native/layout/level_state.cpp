@@ -12,25 +12,28 @@ LevelState quadrisected(const LevelState& state) {
   return finer;
 }
 
+std::vector<std::vector<int>> grouped_by_map(const LevelState& state, const std::vector<int>& quads) {
+  std::map<const PatchMap*, std::size_t> number;
+  std::vector<std::vector<int>> groups;
+  for (std::size_t k = 0; k < quads.size(); ++k) {
+    const auto [at, fresh] = number.insert({state.maps[quads[k]].map.get(), groups.size()});
+    if (fresh) groups.emplace_back();
+    groups[at->second].push_back(static_cast<int>(k));
+  }
+  return groups;
+}
+
 namespace {
 
 // `clip` cuts the parts over some squares out of a map.
 template <class Clip>
 std::vector<PatchMap> cut_out(const LevelState& state, const std::vector<int>& quads, const Clip& clip) {
-  // By the quads' order: what comes of it does not depend on where the maps are in memory.
-  std::map<const PatchMap*, std::size_t> number;
-  std::vector<std::vector<std::size_t>> places;  // in `quads`, a list for each map
-  for (std::size_t k = 0; k < quads.size(); ++k) {
-    const auto [at, fresh] = number.insert({state.maps[quads[k]].map.get(), places.size()});
-    if (fresh) places.emplace_back();
-    places[at->second].push_back(k);
-  }
   std::vector<PatchMap> out(quads.size());
-  for (const std::vector<std::size_t>& of_map : places) {
+  for (const std::vector<int>& group : grouped_by_map(state, quads)) {
     std::vector<DyadicSquare> squares;
-    for (const std::size_t k : of_map) squares.push_back(state.maps[quads[k]].square);
-    std::vector<PatchMap> parts = clip(*state.maps[quads[of_map[0]]].map, squares);
-    for (std::size_t i = 0; i < of_map.size(); ++i) out[of_map[i]] = std::move(parts[i]);
+    for (const int k : group) squares.push_back(state.maps[quads[k]].square);
+    std::vector<PatchMap> parts = clip(*state.maps[quads[group.front()]].map, squares);
+    for (std::size_t i = 0; i < group.size(); ++i) out[group[i]] = std::move(parts[i]);
   }
   return out;
 }

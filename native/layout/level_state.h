@@ -38,6 +38,9 @@ struct LevelState {
 // The next level, before any operation.
 LevelState quadrisected(const LevelState& state);
 
+// The places in `quads` of those of one map together, in the order in which their maps come: the same wherever these are in memory.
+std::vector<std::vector<int>> grouped_by_map(const LevelState& state, const std::vector<int>& quads);
+
 // The maps of some quads. Throws NoMap where rounding would fold one.
 std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads);
 

@@ -4,7 +4,10 @@
 #include "parameterization/global_map.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
+#include "base/found.h"
 #include "parameterization/collapse_hierarchy.h"
 #include "parameterization/cone_motion.h"
 #include "parameterization/corner_motion.h"
@@ -68,6 +71,20 @@ GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, con
   hierarchy.refine(progress.part(0.6, 1));
   report.energy = mean_energy(charts, stars);
   return report;
+}
+
+GlobalMapReport smooth_map_surely(ChartMesh& charts, const PatchedSurface& surface, GlobalMapOptions options, const Progress& progress) {
+  const double first = options.vertices_a_quad;
+  Found<GlobalMapReport> report;
+  for (const double vertices_a_quad : {first, 3 * first, std::numeric_limits<double>::infinity()}) {
+    options.vertices_a_quad = vertices_a_quad;
+    ChartMesh trial = charts;
+    report = found([&] { return smooth_map(trial, surface, options, progress); });
+    if (!report) continue;
+    charts = std::move(trial);
+    return *report;
+  }
+  throw NoMap(report.reason);
 }
 
 std::vector<int> uncut_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress) {

@@ -23,8 +23,10 @@ struct GlobalMapReport {
 // Makes the map smooth across patches, even and right-angled: descends a barrier energy over all patches at once on a collapsed copy, and carries the
 // result back to the fine mesh level by level. Bijectivity holds throughout: no step may fold a triangle. Points of `surface` that were inserted by
 // cutting are merged away where the map allows (the surface stays the same set of points). Patch sides move with the map: afterwards `surface` is of
-// no use.
+// no use. Throws NoMap where a vertex finds no place on the way back.
 GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
+// The same, and where a vertex finds no place on a flatter hierarchy, at last on none: slower, but then nothing has to find one.
+GlobalMapReport smooth_map_surely(ChartMesh& charts, const PatchedSurface& surface, GlobalMapOptions options, const Progress& progress);
 
 // Merges all points of `surface` that were inserted by cutting, and moves cones from them to a neighbour: the charts' triangles are those of the
 // surface that was cut. Returns the point of that surface for each vertex that is alive. Throws NoMap where the map refuses.

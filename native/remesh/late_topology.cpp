@@ -13,7 +13,7 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr double kQuadsAround = 4;  // of a loop that opens: with fewer the tube is a pinch
-constexpr double kMostRise = 0.3;   // of energy a new quad: above it they are far from square, and a finer level has better ones
+constexpr double kMostRise = 0.3;   // of energy a new quad: above it they are far from square, and a finer level may have better ones
 constexpr double kWorstRise = 10;   // ... above which the mesh would be a wreck there: it is not opened
 constexpr int kMostMargin = 2;      // rings of quads beside what covers it
 

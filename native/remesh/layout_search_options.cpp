@@ -3,18 +3,15 @@
 
 #include <algorithm>
 
+#include "remesh/skin.h"
+
 namespace hybrid_mesh {
 namespace {
 
-constexpr double kEnoughQuads = 250;  // to follow the shape's features without operations
 // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
 constexpr int kFewQuads = 20;
 
 }  // namespace
-
-bool has_finer_operations(const RemeshOptions& options, const BaseDomain& base, const BaseRequest& request) {
-  return options.base == BaseSize::Minimal && !options.semi_regular && request.operations && base.quads() < kEnoughQuads && options.levels != 0;
-}
 
 LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Budget& budget, const BaseDomain& base, const BaseRequest& request) {
   LayoutSearchOptions search;

@@ -183,12 +183,12 @@ Plan::Region region_from_json(const PlanEntry& entry) {
   if (has_quads && r.starts.empty()) entry.at("start");
   if (has_quads) {
     const std::vector<PlanEntry> quads = entry.at("new_quads").list();
-    for (const PlanEntry& e : quads) r.pattern.quads.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
+    std::vector<std::array<int, 4>>& numbers = r.pattern.kind == RegionPattern::Kind::Even ? r.pattern.outline.quads : r.pattern.quads;
+    for (const PlanEntry& e : quads) numbers.push_back(new_quad(e, 4 * static_cast<std::int64_t>(quads.size() + r.quads.size())));
   }
   if (entry.has("nodes")) {
     // The region's corners, then the new ones.
     LayoutOutline& outline = r.pattern.outline;
-    outline.quads = r.pattern.quads;
     int count = 0;
     for (const auto& q : outline.quads) count = std::max(count, 1 + *std::max_element(q.begin(), q.end()));
     for (const PlanEntry& p : entry.at("nodes").list(count)) outline.nodes.push_back(p.point());

@@ -109,7 +109,8 @@ Json regions_to_json(const Plan& plan) {
     if (r.pattern.height > 0) region["height"] = r.pattern.height;
     if (r.pattern.even_quads > 0) region["even_quads"] = r.pattern.even_quads;
     put_starts(region, r.starts);
-    if (!r.pattern.quads.empty()) region["new_quads"] = r.pattern.quads;
+    const std::vector<std::array<int, 4>>& quads = r.pattern.kind == RegionPattern::Kind::Even ? r.pattern.outline.quads : r.pattern.quads;
+    if (!quads.empty()) region["new_quads"] = quads;
     if (!r.pattern.outline.nodes.empty()) {
       region["nodes"] = nodes_to_json(r.pattern.outline);
       region["sides"] = curves_to_json(r.pattern.outline);

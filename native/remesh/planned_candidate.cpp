@@ -104,7 +104,7 @@ Candidate lay_out(const RemeshTask& task, const Plan& plan) {
   // Even quads are not to be found again: on this surface they would be others.
   std::vector<Plan::Region> regions = plan.regions;
   for (Plan::Region& region : regions)
-    if (!region.pattern.quads.empty()) region.pattern.even_quads = 0;
+    if (!region.pattern.outline.quads.empty()) region.pattern.even_quads = 0;
   Found<Candidate> c = assembled(task, working, std::move(map), std::nullopt, operations_of(task, regions));
   if (!c) throw Error(ErrorCode::Unsupported, "no map to the plan's quads is found on this surface: " + c.reason);
   return std::move(*c);

@@ -10,7 +10,6 @@
 #include "layout/operations/quad_measures.h"
 #include "layout/operations/region_search.h"
 #include "layout/search/layout_search.h"
-#include "remesh/layout_search_options.h"
 #include "remesh/plan_regions.h"
 
 namespace hybrid_mesh {
@@ -63,14 +62,12 @@ class Skin {
     for (int round = 0; round < options_.rounds; ++round) {
       const std::vector<Plan::Region> regions = named(find_regions(made_.state(), options_.skin, progress_));
       if (regions.empty()) break;
-      for (const Plan::Region& region : regions) repatch(region, Better::Known);
+      for (const Plan::Region& region : regions) repatch(region);
     }
     return std::move(done_);
   }
 
  private:
-  enum class Better { Known, Asked };  // than the quads that are there now: known before, or asked of the map
-
   // By addresses, which stay as they are while other regions are laid out anew.
   std::vector<Plan::Region> named(const std::vector<RegionRepatch>& found) const {
     std::vector<Plan::Region> regions;
@@ -81,13 +78,13 @@ class Skin {
   void lay_out_evenly() {
     for (const Plan::Region& region : named(find_even_regions(made_.state(), {options_.even_quads, 1.0 * options_.skin.most, options_.uneven}))) {
       const bool most = 2 * static_cast<int>(region.quads.size()) > made_.quads().graph().patch_count();
-      const std::string failure = repatch(region, Better::Asked);
+      const std::string failure = repatch(region);
       if (!failure.empty() && most) throw NoMap(failure);
     }
   }
 
   // Returns why it is not done; empty if it is.
-  std::string repatch(Plan::Region region, Better better) {
+  std::string repatch(Plan::Region region) {
     const RegionRepatch repatch = resolved(region, made_.quads());
     Found<MappedEdit> mapped;
     try {
@@ -97,9 +94,8 @@ class Skin {
       mapped = {std::nullopt, e.what()};  // there are no even quads with its boundary
     }
     if (!mapped) return mapped.reason;
-    if (better == Better::Asked && !(mapped->energy_after < mapped->energy_before)) return "its quads would be no better";
+    if (!(mapped->energy_after < mapped->energy_before)) return "its quads would be no better";
     if (region.pattern.kind == RegionPattern::Kind::Even) {
-      region.pattern.quads = mapped->edit.quads;
       region.pattern.outline = mapped->outline;
       move_pattern(region.pattern, [&](const Vec3& p) { return placement_.from_unit(p); });
     }
@@ -117,13 +113,16 @@ class Skin {
 
 }  // namespace
 
+bool has_finer_operations(const RemeshOptions& options, const BaseDomain& base, const BaseRequest& request) {
+  return options.base == BaseSize::Minimal && !options.semi_regular && request.operations && base.quads() < kEnoughQuads && options.levels != 0;
+}
+
 SkinOptions skin_options(const RemeshTask& task, const Budget& budget, const BaseDomain& base, const BaseRequest& request) {
   const RemeshOptions& options = task.options;
   SkinOptions out;
-  if (options.semi_regular) return out;
-  if (options.base == BaseSize::Minimal) {
-    if (has_finer_operations(options, base, request)) out = minimal_options(task, budget, base);
-  } else if (options.base == BaseSize::Auto && options.refinement == Refinement::Uniform && budget.levels > kFittedLevel) {
+  if (has_finer_operations(options, base, request)) {
+    out = minimal_options(task, budget, base);
+  } else if (!options.semi_regular && options.base == BaseSize::Auto && options.refinement == Refinement::Uniform && budget.levels > kFittedLevel) {
     // Not for adaptive meshes: they would begin with all quads of that level.
     out.level = kFittedLevel;
     out.rounds = kFittedRounds;

@@ -10,6 +10,9 @@
 
 namespace hybrid_mesh {
 
+// Quads: one ring around a feature that sticks out, where that costs next to nothing of the budget.
+constexpr double kRoomForARing = 4;
+
 // Which operations a remesh does by itself, on one level: even quads where those of a minimal base are too uneven to be refined any further, and skin
 // that grows where quads would be stretched.
 struct SkinOptions {
@@ -19,6 +22,8 @@ struct SkinOptions {
   int rounds = 0;         // of skin: what sticks out of the first one's quads grows skin in the second
   EditCandidateOptions skin;
 };
+// Whether a minimal base is to have operations on a finer level.
+bool has_finer_operations(const RemeshOptions& options, const BaseDomain& base, const BaseRequest& request);
 SkinOptions skin_options(const RemeshTask& task, const Budget& budget, const BaseDomain& base, const BaseRequest& request);
 
 // Does them. `made`: at the base level, with its maps; afterwards at the level of the operations, if there are any. Returns what was done, as a plan

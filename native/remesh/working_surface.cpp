@@ -18,6 +18,12 @@ namespace {
 
 using Weights = std::array<double, 3>;
 
+// Where a point that has just been added lies. `hint`: a face near it.
+void place_last_point(WorkingSurface& surface, int hint) {
+  const ClosestPoint closest = surface.query->closest(surface.mesh.points.back(), hint);
+  surface.place.push_back({closest.face, closest.weights});
+}
+
 // A side of the base that runs along the boundary is a straight line in the map: a triangle between an inner edge that joins two of its vertices and
 // that line would have no area.
 void split_chords(WorkingSurface& surface) {
@@ -34,8 +40,7 @@ void split_chords(WorkingSurface& surface) {
       if (o < h || a >= points || b >= points || loop[a] < 0 || loop[a] != loop[b] || split[h / 3] || split[o / 3]) continue;
       split[h / 3] = split[o / 3] = 1;
       split_inner_edge(mesh, sources, h);
-      const ClosestPoint closest = surface.query->closest(mesh.points.back(), mesh.source_face[h / 3]);
-      surface.place.push_back({closest.face, closest.weights});
+      place_last_point(surface, mesh.source_face[h / 3]);
       any = true;
     }
     if (any) connect_half_edges(mesh);
@@ -70,8 +75,7 @@ bool quarter_small_components(WorkingSurface& surface, const TriangleSurface& pl
         m[i] = at->second;
         if (!fresh) continue;
         mesh.points.push_back(0.5 * (mesh.points[c[i]] + mesh.points[c[(i + 1) % 3]]));
-        const ClosestPoint closest = surface.query->closest(mesh.points.back(), source);
-        surface.place.push_back({closest.face, closest.weights});
+        place_last_point(surface, source);
       }
       for (const std::array<int, 3>& quarter : {std::array{c[0], m[0], m[2]}, {c[1], m[1], m[0]}, {c[2], m[2], m[1]}, m}) {
         faces.push_back(quarter);

@@ -16,15 +16,9 @@ namespace {
 // A value for every quad of a level, of its map.
 template <class Value>
 std::vector<double> of_quads(const LevelState& state, const Value& value) {
-  // A map at a time: its quads are cut out of it together.
-  std::vector<std::vector<int>> groups;
-  std::vector<int> order(state.maps.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return state.maps[a].map < state.maps[b].map; });
-  for (const int q : order) {
-    if (groups.empty() || state.maps[groups.back().front()].map != state.maps[q].map) groups.emplace_back();
-    groups.back().push_back(q);
-  }
+  std::vector<int> all(state.maps.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<std::vector<int>> groups = grouped_by_map(state, all);
   std::vector<double> out(state.maps.size());
   parallel_for_each_index(static_cast<std::int64_t>(groups.size()), [&](std::int64_t g) {
     const std::vector<PatchMap> maps = maps_of(state, groups[g]);

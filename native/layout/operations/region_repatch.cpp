@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "base/found.h"
 #include "layout/drawn/face_filling.h"
 #include "layout/operations/region_exchange.h"
 #include "layout/operations/region_outline.h"
@@ -118,7 +117,7 @@ LayoutEdit rows_in(const RegionSurface& surface, const LocalRegion& local, int h
 
 // Those that it is known to have become, on another surface along their outline.
 std::optional<DrawnEdit> even_in(const RegionSurface& surface, const LocalRegion& local, const RegionPattern& pattern, const Progress& progress) {
-  const bool known = !pattern.quads.empty();
+  const bool known = !pattern.outline.quads.empty();
   if (known && pattern.even_quads == 0) return std::nullopt;
   const int wanted = pattern.even_quads > 0 ? pattern.even_quads : static_cast<int>(local.in_part.patches.size());
   std::string defect = "no even quads with its boundary are found: try another number of them, or a larger region";
@@ -128,11 +127,25 @@ std::optional<DrawnEdit> even_in(const RegionSurface& surface, const LocalRegion
     if (!drawn) continue;
     defect = find_edit_defect(local.level, local.in_level, in_level(drawn->edit, local));
     if (!defect.empty()) continue;
-    if (!known || drawn->edit.quads == pattern.quads) return drawn;
+    if (!known || drawn->edit.quads == pattern.outline.quads) return drawn;
     break;
   }
   if (!known) throw Error(ErrorCode::InvalidInput, defect);
   return std::nullopt;
+}
+
+// The region cut along an edit's quads: along their outline where that is known, else drawn in a disk or a ring. `spoke`: see rows_edit(); empty for
+// other edits. `surface` may get further points.
+PatchedSurface lay_out(RegionSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const LayoutOutline& known, std::vector<int> spoke,
+                       const Progress& progress) {
+  if (known.nodes.empty() && region.is_disk()) return draw_quads(surface, edit);
+  if (known.nodes.empty() && is_annulus(region)) {
+    if (spoke.empty()) spoke = find_spoke(edit.quads, static_cast<int>(region.corners.size()), region.rims[1]);
+    return draw_ring(surface, edit, spoke);
+  }
+  PatchedSurface piece = lay_out_region(surface, known.nodes.empty() ? spread_outline(surface, edit) : known, progress);
+  if (piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
+  return piece;
 }
 
 // New quads that need no curves, by the part's numbers. `surface` may get further points.
@@ -152,7 +165,7 @@ DrawnEdit find_edit(RegionSurface& surface, const LocalRegion& local, const Regi
   if (kind == Kind::Automatic) {
     edit = automatic_edit(level, region, progress);
   } else if (kind == Kind::Template || kind == Kind::Even) {
-    edit = template_edit(region, pattern.quads);
+    edit = template_edit(region, kind == Kind::Even ? pattern.outline.quads : pattern.quads);
   } else if (kind == Kind::Rows) {
     edit = rows_in(surface, local, pattern.height, spoke, progress);
   } else {
@@ -163,22 +176,7 @@ DrawnEdit find_edit(RegionSurface& surface, const LocalRegion& local, const Regi
     throw Error(ErrorCode::InvalidInput, "its new quads " + defect);
   if (const std::string defect = find_edit_defect(level, region, edit); !defect.empty()) throw Error(ErrorCode::InvalidInput, defect);
   DrawnEdit out{in_part(std::move(edit), local), {}};
-  LayoutOutline outline = pattern.outline;
-  outline.quads = pattern.quads;
-  if (outline.nodes.empty()) {
-    if (region.is_disk()) {
-      out.piece = draw_quads(surface, out.edit);
-      return out;
-    }
-    if (is_annulus(region)) {
-      if (spoke.empty()) spoke = find_spoke(out.edit.quads, static_cast<int>(region.corners.size()), region.rims[1]);
-      out.piece = draw_ring(surface, out.edit, spoke);
-      return out;
-    }
-    outline = spread_outline(surface, out.edit);
-  }
-  out.piece = lay_out_region(surface, std::move(outline), progress);
-  if (out.piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
+  out.piece = lay_out(surface, region, out.edit, pattern.outline, std::move(spoke), progress);
   return out;
 }
 
@@ -222,16 +220,7 @@ double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<st
   options.corners_move = false;  // ends of the rim are among them
   double area = 0;
   for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
-  // Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
-  constexpr int attempts = 3;
-  Found<GlobalMapReport> report;
-  for (int attempt = 0; attempt < attempts && !report; ++attempt, options.vertices_a_quad *= 3) {
-    ChartMesh trial = charts;
-    report = found([&] { return smooth_map(trial, part, options, progress); });
-    if (report) charts = std::move(trial);
-  }
-  if (!report) throw NoMap(report.reason);
-  return (report->energy - 1) * area;
+  return (smooth_map_surely(charts, part, options, progress).energy - 1) * area;
 }
 
 // Of lengths in unit size, with which the quads have area 1 on average.

@@ -24,8 +24,8 @@ struct RegionPattern {
   std::vector<DrawnStroke> strokes;       // Drawn
   int height = 0;                         // Cubes, Rows; 0: so that quads are about square, at least 1
   int even_quads = 0;                     // Even: about so many; 0: as many as the region has
-  std::vector<std::array<int, 4>> quads;  // Template, numbered as in LayoutEdit; Even: those that it became where it was found, if that is known, ...
-  LayoutOutline outline;                  // ... and where they lay, along which they are laid out on another surface. Its quads are those above
+  std::vector<std::array<int, 4>> quads;  // Template: numbered as in LayoutEdit
+  LayoutOutline outline;                  // Even: the quads that it became where it was found, so numbered, and where they lay, if that is known
 };
 // Moves all that has a place in space.
 void move_pattern(RegionPattern& pattern, const PointMove& move);

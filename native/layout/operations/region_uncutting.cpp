@@ -5,7 +5,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <optional>
 #include <utility>
 
 namespace hybrid_mesh {

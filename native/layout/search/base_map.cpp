@@ -4,7 +4,6 @@
 #include <array>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "layout/regions/region_layout.h"
@@ -15,30 +14,17 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried, at last none: slower, but nothing can fail.
-ChartMesh smooth(const MappedSurface& mapped, GlobalMapOptions options, const Progress& progress) {
-  std::string failure;
-  for (const double vertices_a_quad : {30.0, 90.0, kInfinity}) {
-    options.vertices_a_quad = vertices_a_quad;
-    Found<ChartMesh> smoothed = found([&] {
-      ChartMesh charts(mapped.surface, mapped.corners);
-      smooth_map(charts, mapped.surface, options, progress);
-      return charts;
-    });
-    if (smoothed) return std::move(*smoothed);
-    failure = smoothed.reason;
-  }
-  throw NoMap(failure);
-}
+constexpr double kPatientVertices = 30;  // a quad: of a flatter hierarchy than where a map could not be carried
 
 // The map of a layout that was found elsewhere, made anew on another version of the surface.
-CarriedMap repeat(CarriedMap map, const LayoutScript& script, const GlobalMapOptions& options, const Progress& progress) {
+CarriedMap repeat(CarriedMap map, const LayoutScript& script, GlobalMapOptions options, const Progress& progress) {
+  options.vertices_a_quad = kPatientVertices;
   MappedSurface mapped{std::move(map.layout), {}};
   mapped.corners.resize(mapped.surface.mesh.faces.size());
   for (const LayoutScript::Edit& of : script.edits) apply_edit(mapped, of.edit);
   mapped.corners = map_patches(mapped.surface, progress.part(0, 0.2));
-  ChartMesh charts = smooth(mapped, options, progress.part(0.2, 1));
+  ChartMesh charts(mapped.surface, mapped.corners);
+  smooth_map_surely(charts, mapped.surface, options, progress.part(0.2, 1));
   map.replace(std::move(mapped.surface), std::move(charts));
   return map;
 }

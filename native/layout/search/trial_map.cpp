@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/search/trial_map.h"
 
-#include <string>
 #include <utility>
 
-#include "base/found.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_energy.h"
 
@@ -28,22 +26,9 @@ void TrialMap::change(const LayoutEdit& edit, const Progress& progress) {
   map_patches(mapped_.surface, change.added, mapped_.corners, progress);
 }
 
-void TrialMap::smooth(GlobalMapOptions options, const Progress& progress) {
-  constexpr int attempts = 3;
-  std::string failure;
-  for (int attempt = 0; attempt < attempts; ++attempt) {
-    const Found<GlobalMapReport> report = found([&] {
-      fresh_.emplace(mapped_.surface, mapped_.corners);
-      return smooth_map(*fresh_, mapped_.surface, options, progress);
-    });
-    if (report) {
-      excess_ = (report->energy - 1) * mapped_.surface.patch_count();
-      return;
-    }
-    failure = report.reason;
-    options.vertices_a_quad *= 3;
-  }
-  throw NoMap(failure);
+void TrialMap::smooth(const GlobalMapOptions& options, const Progress& progress) {
+  fresh_.emplace(mapped_.surface, mapped_.corners);
+  excess_ = (smooth_map_surely(*fresh_, mapped_.surface, options, progress).energy - 1) * mapped_.surface.patch_count();
 }
 
 void TrialMap::keep() {

@@ -26,8 +26,8 @@ class TrialMap {
   double scale() const { return scale_; }                        // of lengths, see ChartMesh
   // Edits the trial's layout.
   void change(const LayoutEdit& edit, const Progress& progress);
-  // Smooths the trial's map. Where a vertex of the collapse hierarchy finds no place, a flatter hierarchy is tried.
-  void smooth(GlobalMapOptions options, const Progress& progress);
+  // Smooths the trial's map. Throws NoMap.
+  void smooth(const GlobalMapOptions& options, const Progress& progress);
   // Whether the trial's map has less energy than the best.
   bool is_better() const { return excess_ < least_; }
   void keep();
