@@ -77,7 +77,7 @@ def repatched(report, operation, outcome, most_vertices=0):
         if number < first:
             continue
         level.update(outcome["levels"].get(number, {}))
-        level.update(l2=None, hausdorff=None, stretch=None, irregular_vertices=None)
+        level.update(l2=None, hausdorff=None, closed_surface=None, scaled_jacobian=None, stretch=None, irregular_vertices=None)
         if number == first:
             level.setdefault("irregular_ops", []).append(
                 {"kind": operation["kind"], "removed_quads": len(operation["quads"]), "new_quads": len(operation["new_quads"])}

@@ -19,7 +19,7 @@ namespace hybrid_mesh {
 
 namespace {
 
-constexpr int kMostBoundaries = 24;  // that open late: each takes a layout of its own, and where there are more the base is as good with them
+constexpr int kMostBoundaries = 200;  // that open late: each takes a third of a second, and a surface with more of them is in shreds
 constexpr double kDetour = 1.5;      // times as long a loop may be whose caps do not meet the surface
 
 }  // namespace
@@ -50,6 +50,9 @@ BaseSurface base_surface(const TriangleSurface& repaired, const Placement& place
     SurfaceSeries series = close_topology(repaired, std::move(events));
     out.mesh = series.closed;
     for (TriangleSurface* s : {&series.input, &series.closed}) *s = placement.to_unit(std::move(*s));
+    for (auto& of_event : series.patches)
+      for (RimPatch& patch : of_event)
+        for (Vec3& p : patch.points) p = placement.to_unit(p);
     out.series = std::make_shared<const SurfaceSeries>(std::move(series));
   }
   out.topology = summarize_topology(to_soup(out.mesh));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "base/found.h"
 #include "layout/operations/topology_opening.h"
@@ -28,9 +29,10 @@ class LateOpening {
       last = 4 * static_cast<std::int64_t>(made_.quads().graph().patch_count()) > most_quads_;
       open_level(last);
       if (closed().empty()) break;
-      if (!last) made_.refine();
-      covering_.clear();
-      finer_covering_.clear();
+      if (last) continue;
+      made_.refine();
+      covering_ = std::move(finer_covering_);
+      finer_covering_ = {};
     }
     for (const int e : closed()) out_.unopened.push_back({e, reasons_[e]});
     return std::move(out_);
@@ -60,7 +62,7 @@ class LateOpening {
         reasons_[e] = "its quads are too large to go around it";
         continue;
       }
-      try_to_open(e, last || level >= 0);
+      try_to_open(e, last || level >= 0, last);
     }
   }
 
@@ -71,10 +73,12 @@ class LateOpening {
     double rise() const { return (mapped.energy_after - mapped.energy_before) / static_cast<double>(mapped.edit.quads.size()); }
   };
 
-  // Opens it where that leaves good quads, close to its caps or with more room around; `anyhow`: also where it does not, in the best way.
-  void try_to_open(int e, bool anyhow) {
+  // Opens it where that leaves good quads, close to its caps or with more room around; `anyhow`: also where it does not, in the best way; `last`:
+  // there is no finer level.
+  void try_to_open(int e, bool anyhow, bool last) {
     const LevelState state = made_.state();
-    std::optional<Opening> best = best_opening(state, covering_, e);
+    std::optional<Opening> best = best_opening(state, covering_, e, false);
+    if (!best && last) best = best_opening(state, covering_, e, true);
     if (!best) return;
     if (best->rise() > kWorstRise || (best->rise() > kMostRise && !anyhow && is_better_finer(state, e, best->rise()))) {
       reasons_[e] = "its quads would be distorted";
@@ -86,15 +90,13 @@ class LateOpening {
       planned.pattern.height = static_cast<int>(best->mapped.edit.quads.size() / rim_of(state, best->region));
     out_.regions.push_back(std::move(planned));
     made_.apply(std::move(best->mapped));
-    covering_.clear();  // its quads have other numbers now
-    finer_covering_.clear();
   }
 
-  std::optional<Opening> best_opening(const LevelState& state, CoveringQuads& covering, int e) {
-    if (covering.empty()) covering = covering_quads(state);
+  std::optional<Opening> best_opening(const LevelState& state, CoveringSearch& search, int e, bool together) {
+    const CoveringQuads covering = search.quads_of(state);
     std::optional<Opening> best;
     for (int margin = 0; margin <= kMostMargin && !(best && best->rise() <= kMostRise); ++margin) {
-      std::optional<Opening> found = find(state, covering, e, margin);
+      std::optional<Opening> found = find(state, covering, e, {margin, together});
       if (!found) continue;
       if (best && found->rise() >= best->rise()) break;  // more room makes it no better
       best = std::move(found);
@@ -104,12 +106,12 @@ class LateOpening {
 
   // Would it leave better quads on the next level? Where what opens is wide beside its quads a finer level has more of them to distort.
   bool is_better_finer(const LevelState& state, int e, double rise) {
-    const std::optional<Opening> finer = best_opening(quadrisected(state), finer_covering_, e);
+    const std::optional<Opening> finer = best_opening(quadrisected(state), finer_covering_, e, false);
     return finer && finer->rise() < rise;
   }
 
-  std::optional<Opening> find(const LevelState& state, const CoveringQuads& covering, int e, int margin) {
-    const Found<RegionRepatch> region = find_opening(state, covering, e, margin);
+  std::optional<Opening> find(const LevelState& state, const CoveringQuads& covering, int e, const OpeningRoom& room) {
+    const Found<RegionRepatch> region = find_opening(state, covering, e, room);
     reasons_[e] = region.reason;
     if (!region) return std::nullopt;
     try {
@@ -132,7 +134,7 @@ class LateOpening {
   const RemeshTask& task_;
   std::int64_t most_quads_;
   std::vector<std::string> reasons_;
-  CoveringQuads covering_, finer_covering_;  // of the level as it is, and of its quads' quadrants; empty: not known
+  CoveringSearch covering_, finer_covering_;  // of the level, and of its quads' quadrants
   LateTopology out_;
 };
 

@@ -2,6 +2,9 @@
 #include "remesh/level_fits.h"
 
 #include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -34,6 +37,27 @@ class FittedVertices {
  private:
   const QuadMesh& mesh_;
   std::vector<std::pair<VertexId, std::size_t>> at_;
+};
+
+// The surfaces that the levels are fitted to where not all of the topology is open, K^j, for distances to them.
+class ClosedSurfaces {
+ public:
+  ClosedSurfaces(const BaseSurface& base, const std::vector<int>& opened_on, int depth) {
+    for (int j = 0; j <= depth; ++j) {
+      std::vector<bool> open;
+      for (const int on : opened_on) open.push_back(on <= j);
+      std::shared_ptr<const DistanceReference>& reference = of_[open];
+      if (!reference && std::find(open.begin(), open.end(), false) != open.end())
+        reference = std::make_shared<const DistanceReference>(to_soup(open_topology(*base.series, open).surface));
+      at_level_.push_back(reference);
+    }
+  }
+  // Null where all is open.
+  const DistanceReference* at(int level) const { return at_level_[level].get(); }
+
+ private:
+  std::map<std::vector<bool>, std::shared_ptr<const DistanceReference>> of_;
+  std::vector<std::shared_ptr<const DistanceReference>> at_level_;
 };
 
 }  // namespace
@@ -82,6 +106,7 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
   task.watch.start("levels");
   const int depth = c.hierarchy.depth();
   const FittedVertices fitted(c.final_mesh);
+  const ClosedSurfaces closed(task.base, c.opened_on, depth);
   c.level_meshes.assign(depth + 1, {});
   c.level_reports.assign(depth + 1, {});
   // The finest, which take the longest, first.
@@ -101,7 +126,9 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
     if (!last) samples.samples = 30000;
     const SurfaceDistance distance = task.source.reference->distance(to_soup(mesh), samples, part);
     if (last) c.distance = distance;
-    c.level_reports[j] = describe_level(c.hierarchy, j, mesh, distance);
+    std::optional<SurfaceDistance> to_closed;
+    if (closed.at(j)) to_closed = closed.at(j)->distance(to_soup(mesh), samples, part);
+    c.level_reports[j] = describe_level(c.hierarchy, j, mesh, distance, to_closed);
   });
   task.watch.stop();
 }

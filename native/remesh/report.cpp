@@ -89,6 +89,10 @@ double regular_fraction(const Candidate& c) {
 constexpr double kFarOff = 2;
 constexpr double kManyInverted = 0.001;  // of the quads
 
+Json describe_shapes(const QuadQuality& q) {
+  return {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}};
+}
+
 // What was asked for and could not be had, and where the result is poor.
 Json warnings(const RemeshTask& task, const Candidate& c) {
   const RemeshOptions& options = task.options;
@@ -103,6 +107,15 @@ Json warnings(const RemeshTask& task, const Candidate& c) {
                    (limb ? "a part that sticks out is lost; a larger base (base_quads) or adaptive refinement may keep it"
                          : "a fold is closed; more vertices or adaptive refinement follow it"));
   }
+  std::string levels;
+  for (std::size_t j = 0; j + 1 < c.level_reports.size(); ++j) {
+    const Json &level = c.level_reports[j], &closed = level["closed_surface"];
+    const double off = (closed.is_null() ? level : closed)["hausdorff"].get<double>() / mean_width(c.level_meshes[j]);
+    if (off > kFarOff) levels += (levels.empty() ? "N" : ", N") + std::to_string(j);
+  }
+  if (!levels.empty())
+    list.push_back("coarser levels are poor: parts of the surface are farther from " + levels + " than " + std::to_string(std::lround(kFarOff)) +
+                   " widths of a quad; a larger base (base_quads) goes out into them");
   if (const QuadQuality q = quad_quality(c.final_mesh); q.inverted > kManyInverted)
     list.push_back(std::to_string(std::lround(q.inverted * static_cast<double>(q.quads))) + " of " + std::to_string(q.quads) +
                    " quads are inverted: the surface is bent or thin there beyond what quads of this size follow; more vertices may help");
@@ -117,21 +130,25 @@ std::string scientific(double value) {
   return text;
 }
 
-Json describe_level(const HybridMesh& hierarchy, int level, const QuadMesh& mesh, const SurfaceDistance& d) {
+Json describe_level(const HybridMesh& hierarchy, int level, const QuadMesh& mesh, const SurfaceDistance& d,
+                    const std::optional<SurfaceDistance>& to_closed) {
   const TopologySummary t = summarize_topology(to_soup(mesh));
   const LevelStretch s = level_stretch(hierarchy, mesh);
   std::vector<double> sorted = s.stretch;
   std::sort(sorted.begin(), sorted.end());
   const auto at = [&](double p) { return sorted.empty() ? 0.0 : sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * sorted.size()))]; };
   const std::vector<char> irregular = irregular_vertices(mesh);
+  const QuadQuality q = quad_quality(mesh);
   return {{"level", level},
           {"vertices", mesh.points.size()},
-          {"quads", quad_quality(mesh).quads},
+          {"quads", q.quads},
           {"genus", t.genus},
           {"components", t.components},
           {"boundary_loops", t.boundary_loops},
           {"l2", d.l2},
           {"hausdorff", d.hausdorff},
+          {"closed_surface", to_closed ? Json{{"l2", to_closed->l2}, {"hausdorff", to_closed->hausdorff}} : Json(nullptr)},
+          {"scaled_jacobian", describe_shapes(q)},
           {"stretch", {{"p05", at(0.05)}, {"p50", at(0.5)}, {"p95", at(0.95)}, {"max", sorted.empty() ? 0.0 : sorted.back()}}},
           {"irregular_vertices", std::count(irregular.begin(), irregular.end(), 1)},
           {"irregular_ops", operations_of(hierarchy, level)}};
@@ -160,7 +177,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
                      {"boundary_loops", t.boundary_loops},
                      {"regular_fraction", regular_fraction(c)},
                      {"irregular_vertices", irregular_counts(c)},
-                     {"scaled_jacobian", {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}}}};
+                     {"scaled_jacobian", describe_shapes(q)}};
   if (task.options.error > 0) report["final"]["error_bound_met"] = d.l2 <= task.options.error;
   report["warnings"] = warnings(task, c);
   return report;

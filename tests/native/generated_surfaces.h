@@ -2,9 +2,11 @@
 // Closed and open surfaces of any genus, made up so that tests need no files.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "surface/polygon_soup.h"
 #include "surface/repair.h"
@@ -55,6 +57,38 @@ inline PolygonSoup ball(int n, double open = 2, const Vec3& at = Vec3::Zero(), d
           }
           s.offsets.push_back(static_cast<std::int64_t>(s.indices.size()));
         }
+  }
+  return s;
+}
+
+inline TriangleSurface repaired(const PolygonSoup& soup) {
+  Context context;
+  RepairReport report;
+  return repair(soup, RepairOptions(), report, Progress(context));
+}
+
+// A ball with holes, each the faces around a point, with two points between them at least. 8 n^2 faces before that.
+inline PolygonSoup ball_with_holes(int n, int& holes) {
+  const TriangleSurface whole = repaired(ball(n));
+  std::vector<std::set<int>> beside(whole.points.size());
+  for (const auto& f : whole.faces)
+    for (int i = 0; i < 3; ++i) beside[f[i]].insert({f[(i + 1) % 3], f[(i + 2) % 3]});
+  std::vector<char> middle(whole.points.size(), 0);
+  holes = 0;
+  for (std::size_t v = 0; v < beside.size(); ++v) {
+    std::set<int> near{static_cast<int>(v)};
+    for (int ring = 0; ring < 4; ++ring)
+      for (const int w : std::set<int>(near)) near.insert(beside[w].begin(), beside[w].end());
+    if (std::any_of(near.begin(), near.end(), [&](int w) { return middle[w] != 0; })) continue;
+    middle[v] = 1;
+    ++holes;
+  }
+  PolygonSoup s;
+  s.points = whole.points;
+  for (const auto& f : whole.faces) {
+    if (middle[f[0]] || middle[f[1]] || middle[f[2]]) continue;
+    s.indices.insert(s.indices.end(), f.begin(), f.end());
+    s.offsets.push_back(static_cast<std::int64_t>(s.indices.size()));
   }
   return s;
 }
@@ -111,12 +145,6 @@ inline void add(PolygonSoup& to, const PolygonSoup& from) {
     for (std::int64_t i = from.offsets[p]; i < from.offsets[p + 1]; ++i) to.indices.push_back(from.indices[i] + shift);
     to.offsets.push_back(static_cast<std::int64_t>(to.indices.size()));
   }
-}
-
-inline TriangleSurface repaired(const PolygonSoup& soup) {
-  Context context;
-  RepairReport report;
-  return repair(soup, RepairOptions(), report, Progress(context));
 }
 
 }  // namespace hybrid_mesh::testing

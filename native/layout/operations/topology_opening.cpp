@@ -26,17 +26,19 @@ std::vector<int> members(const PatchSet& in) {
 
 class OpeningSearch {
  public:
-  OpeningSearch(const LevelState& state, const CoveringQuads& covering, int event, int margin)
-      : graph_(state.quads), kind_(state.surface.series->events[event].kind), covering_(covering[event]), event_(event), margin_(margin) {}
+  OpeningSearch(const LevelState& state, const CoveringQuads& covering, int event, const OpeningRoom& room)
+      : graph_(state.quads), kind_(state.surface.series->events[event].kind), covering_(covering[event]), event_(event), room_(room) {}
 
   RegionRepatch run() {
     RegionRepatch out;
     out.opens = {event_};
     out.buffer_rings = 2;
     out.pattern.kind = RegionPattern::Kind::Rows;
-    most_ = std::min(kRoom * (1 + margin_) * (static_cast<int>(covering_[0].size() + covering_[1].size()) + 4), graph_.patch_count() - 1);
+    most_ = std::min(kRoom * (1 + room_.margin) * (static_cast<int>(covering_[0].size() + covering_[1].size()) + 4), graph_.patch_count() - 1);
     if (covering_[0].empty() || (kind_ == EventKind::Cut && covering_[1].empty())) throw NoMap("no quads cover what opens");
-    if (kind_ == EventKind::Cut)
+    if (kind_ == EventKind::Cut && room_.together)
+      find_one_disk(out);
+    else if (kind_ == EventKind::Cut)
       find_disks(out);
     else
       take(out, region_over(around(covering_[0]), kind_ == EventKind::Tube ? 2 : 1));
@@ -52,7 +54,7 @@ class OpeningSearch {
   }
   PatchSet around(const std::vector<int>& quads) const {
     PatchSet in = set_of(quads);
-    for (int ring = 0; ring < margin_; ++ring) in = dilated(graph_, in);
+    for (int ring = 0; ring < room_.margin; ++ring) in = dilated(graph_, in);
     return in;
   }
 
@@ -156,41 +158,57 @@ class OpeningSearch {
     if (a.corners.size() != b.corners.size()) out.pattern.kind = RegionPattern::Kind::Even;
   }
 
+  void find_one_disk(RegionRepatch& out) const {
+    std::vector<int> both = covering_[0];
+    both.insert(both.end(), covering_[1].begin(), covering_[1].end());
+    take(out, region_over(around(both), 1));
+    out.pattern.kind = RegionPattern::Kind::Even;
+  }
+
   const QuadGraph& graph_;
   EventKind kind_;
   const std::array<std::vector<int>, 2>& covering_;
-  int event_, margin_;
+  int event_;
+  OpeningRoom room_;
   int most_ = 0;
 };
 
 }  // namespace
 
-CoveringQuads covering_quads(const LevelState& state) {
+CoveringQuads CoveringSearch::quads_of(const LevelState& state) {
   const SurfaceVersion& version = state.surface;
   CoveringQuads out(version.open.size());
   if (!version.series) return out;
   const SurfaceSeries& series = *version.series;
   const auto event_of = [&](int face) { return face < static_cast<int>(series.face_event.size()) ? series.face_event[face] : -1; };
-  std::map<const PatchMap*, bool> has_any;
-  std::vector<int> quads;
+  std::vector<Covered*> covered;  // per quad of a map that covers any
+  std::vector<int> quads, fresh;
   for (int q = 0; q < state.quads.patch_count(); ++q) {
-    const PatchMap* map = state.maps[q].map.get();
-    const auto [at, fresh] = has_any.insert({map, false});
-    if (fresh) at->second = std::any_of(map->source_face.begin(), map->source_face.end(), [&](int f) { return event_of(f) >= 0; });
-    if (at->second) quads.push_back(q);
+    const QuadMap& of = state.maps[q];
+    const auto [at, new_map] = known_.insert({of.map, {}});
+    if (new_map) at->second.covers_any = std::any_of(of.map->source_face.begin(), of.map->source_face.end(), [&](int f) { return event_of(f) >= 0; });
+    if (!at->second.covers_any) continue;
+    const auto [part, new_part] = at->second.parts[{of.square.u, of.square.v}].insert({of.square.width, {}});
+    quads.push_back(q);
+    covered.push_back(&part->second);
+    if (new_part) fresh.push_back(static_cast<int>(quads.size()) - 1);
   }
-  const std::vector<PatchMap> maps = maps_of(state, quads);
-  for (std::size_t k = 0; k < quads.size(); ++k) {
-    std::set<std::pair<int, int>> covered;
-    for (const int f : maps[k].source_face)
-      if (event_of(f) >= 0) covered.insert({event_of(f), series.face_side[f]});
-    for (const auto& [event, side] : covered) out[event][side].push_back(quads[k]);
+  std::vector<int> unknown;
+  for (const int k : fresh) unknown.push_back(quads[k]);
+  const std::vector<PatchMap> maps = maps_of(state, unknown);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    std::set<std::pair<int, int>> events;
+    for (const int f : maps[i].source_face)
+      if (event_of(f) >= 0) events.insert({event_of(f), series.face_side[f]});
+    covered[fresh[i]]->assign(events.begin(), events.end());
   }
+  for (std::size_t k = 0; k < quads.size(); ++k)
+    for (const auto& [event, side] : *covered[k]) out[event][side].push_back(quads[k]);
   return out;
 }
 
-Found<RegionRepatch> find_opening(const LevelState& state, const CoveringQuads& covering, int event, int margin) {
-  return found([&] { return OpeningSearch(state, covering, event, margin).run(); });
+Found<RegionRepatch> find_opening(const LevelState& state, const CoveringQuads& covering, int event, const OpeningRoom& room) {
+  return found([&] { return OpeningSearch(state, covering, event, room).run(); });
 }
 
 }  // namespace hybrid_mesh

@@ -199,6 +199,45 @@ TEST(LateTopology, NoiseIsClosedForGood) {
   expect_levels_as_reported(all);
 }
 
+// Caps a few triangles wide, side by side: no quads are small enough to come between them.
+TEST(LateTopology, SidesThatHaveNoRoomBesideEachOtherOpenAsOne) {
+  const RemeshResult r = run(to_soup(testing::noisy_ball(12, 4)), late(1500, Refinement::Adaptive));
+  expect_sound(r);
+  expect_levels_as_reported(r);
+  EXPECT_EQ(level_topologies(r).front().genus, 0) << r.report["topology"];
+  EXPECT_EQ(level_topologies(r).back().genus, 4);
+}
+
+TEST(LateTopology, AsManyBoundariesAsTheSurfaceHas) {
+  int holes = 0;
+  const PolygonSoup soup = testing::ball_with_holes(24, holes);
+  ASSERT_GT(holes, 24);
+  const RemeshResult r = run(soup, late(8000, Refinement::Adaptive));
+  expect_sound(r);
+  expect_levels_as_reported(r);
+  EXPECT_EQ(level_topologies(r).front().boundary_loops, 0);
+  EXPECT_EQ(level_topologies(r).back().boundary_loops, holes);
+}
+
+// A level lies on the surface with what has not opened closed, wherever that stands.
+TEST(LateTopology, LevelsAreMeasuredToTheirOwnSurface) {
+  PolygonSoup moved = torus(48, 24);
+  for (Vec3& p : moved.points) p = 100 * p + Vec3(300, -200, 50);
+  for (const PolygonSoup& soup : {torus(48, 24), moved}) {
+    const RemeshResult r = run(soup, late(3000));
+    const int opens = r.report["topology"]["loops"][0]["level"].get<int>();
+    for (const Json& level : r.report["levels"]) {
+      if (level["level"].get<int>() >= opens) {
+        EXPECT_TRUE(level["closed_surface"].is_null());
+      } else {
+        // The input has no caps, and the mesh has.
+        EXPECT_LT(level["closed_surface"]["l2"].get<double>(), level["l2"].get<double>());
+        EXPECT_LT(level["closed_surface"]["hausdorff"].get<double>(), 0.2);
+      }
+    }
+  }
+}
+
 TEST(LateTopology, TheSameBytesForAnyNumberOfThreads) {
   RemeshOptions options = late(2000, Refinement::Adaptive);
   options.threads = 1;
