@@ -21,6 +21,11 @@ constexpr double full = 0.98;                    // of a budget: enough
 // would be a sixteenth, on a crease an eighth).
 constexpr double kept_by_child = 1.0 / 40;
 
+std::int64_t split_vertices(const HybridMesh& hierarchy) {
+  const HybridMesh::LeafCounts c = hierarchy.leaf_counts();
+  return hierarchy.closure() == FaceClosure::Quads ? 2 * (c.vertices + c.faces) - c.euler : c.vertices;
+}
+
 // A forest whose leaves, closed, are the mesh that is meant.
 //
 // Where closure splits every leaf (FaceClosure::Quads), it does so only if there are hanging nodes. Leaves without any stand for their children here:
@@ -30,10 +35,7 @@ class LeafMesh {
   LeafMesh(const HybridMesh& hierarchy, int deepest) : hierarchy_(hierarchy), deepest_(deepest) {}
 
   const HybridMesh& hierarchy() const { return hierarchy_; }
-  std::int64_t vertices() const {
-    const HybridMesh::LeafCounts c = hierarchy_.leaf_counts();
-    return splits_all() || !hierarchy_.conforming() ? vertices_if_split(c) : c.vertices;
-  }
+  std::int64_t vertices() const { return splits_all() ? split_vertices(hierarchy_) : closed_vertices(hierarchy_); }
   // The vertices with every leaf refined.
   std::int64_t vertices_of_next_level() const {
     HybridMesh next = hierarchy_;
@@ -53,9 +55,6 @@ class LeafMesh {
 
  private:
   bool splits_all() const { return hierarchy_.closure() == FaceClosure::Quads && hierarchy_.conforming() && hierarchy_.depth() < deepest_; }
-  std::int64_t vertices_if_split(const HybridMesh::LeafCounts& c) const {
-    return hierarchy_.closure() == FaceClosure::Quads ? 2 * (c.vertices + c.faces) - c.euler : c.vertices;
-  }
 
   HybridMesh hierarchy_;
   int deepest_;
@@ -172,7 +171,7 @@ class AdaptiveRefinement {
       : surface_(surface), options_(options), budget_(options.vertices > 0 ? options.vertices : most_vertices), base_(base) {}
 
   QuadMesh run(HybridMesh& result, const Progress& progress) {
-    const std::int64_t least = base_.leaf_counts().vertices;
+    const std::int64_t least = closed_vertices(base_);
     if (least > budget_)
       throw Error(ErrorCode::InvalidInput,
                   "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(budget_) + " allowed");
@@ -338,6 +337,10 @@ class AdaptiveRefinement {
 };
 
 }  // namespace
+
+std::int64_t closed_vertices(const HybridMesh& hierarchy) {
+  return hierarchy.conforming() ? hierarchy.leaf_counts().vertices : split_vertices(hierarchy);
+}
 
 QuadMesh refine_adaptively(HybridMesh& hierarchy, const DistanceReference& surface, const AdaptiveOptions& options, const Progress& progress) {
   return AdaptiveRefinement(hierarchy, surface, options).run(hierarchy, progress);

@@ -16,6 +16,9 @@ struct AdaptiveOptions {
   int deepest = limits::most_levels;  // finest level of a leaf
 };
 
+// The vertices of the mesh of a hierarchy's leaves, closed as the hierarchy says.
+std::int64_t closed_vertices(const HybridMesh& hierarchy);
+
 // Refines a hierarchy of base quads, each with its map, where that brings the mesh of its leaves closest to the surface, and returns that mesh:
 // closed as the hierarchy's closure says and fitted to the surface. Leaves are balanced (HybridMesh::refine_balanced). `surface` is the input in
 // the coordinates of the maps.
@@ -24,7 +27,7 @@ struct AdaptiveOptions {
 // leads there (where closure splits every leaf, no mesh has a number between that of the base and four times as many).
 // With one, the mesh meets it, as DistanceReference::distance() with its default options measures it, with nearly the fewest vertices that refinement
 // needs for it; if the vertices allowed do not suffice, they are used and the bound is missed, which is for the caller to see. Throws
-// Error{InvalidInput} if the base alone has more vertices than are allowed.
+// Error{InvalidInput} if the hierarchy as it is has more vertices than are allowed.
 QuadMesh refine_adaptively(HybridMesh& hierarchy, const DistanceReference& surface, const AdaptiveOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -20,7 +20,7 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kMostBoundaries = 200;  // that open late: each takes a third of a second, and a surface with more of them is in shreds
-constexpr double kDetour = 1.5;      // times as long a loop may be whose caps do not meet the surface
+constexpr double kDetour = 1.5;       // times as long a loop may be whose caps do not meet the surface
 
 }  // namespace
 

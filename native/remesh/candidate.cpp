@@ -11,6 +11,7 @@
 #include "hierarchy/coarsening.h"
 #include "layout/search/base_map.h"
 #include "parameterization/patch_extraction.h"
+#include "remesh/adaptive_refinement.h"
 #include "remesh/late_topology.h"
 #include "remesh/layout_search_options.h"
 #include "remesh/outlines.h"
@@ -54,6 +55,17 @@ bool has_twins(const QuadGraph& base) {
   return std::adjacent_find(corners.begin(), corners.end()) != corners.end();
 }
 
+// Has the coarsest mesh with all that has opened no more vertices than are allowed?
+bool is_within(const RemeshOptions& options, const Candidate& c) { return options.vertices == 0 || closed_vertices(c.hierarchy) <= options.vertices; }
+
+// What opened on the finest level finds no room.
+void close_finest(Candidate& c) {
+  const int finest = c.opened_on.empty() ? 0 : *std::max_element(c.opened_on.begin(), c.opened_on.end());
+  for (std::size_t e = 0; finest > 0 && e < c.opened_on.size(); ++e)
+    if (c.opened_on[e] == finest) c.unopened.push_back({static_cast<int>(e), "the quads around it would be more than the mesh may have"});
+  std::sort(c.unopened.begin(), c.unopened.end());
+}
+
 Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request, WorkingSurfaceInUse& in_use) {
   const RemeshOptions& options = task.options;
   Plan::Origin origin;
@@ -74,14 +86,23 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   if (!map) throw NoMap(map.reason);
   if (has_twins(map->layout.graph())) throw NoMap("two of the base's quads have the same corners");
   origin.script = map->script;
-  LateTopology late;
-  Candidate c = assemble_candidate(task, working, std::move(*map), origin, [&](Construction& made) {
-    std::vector<Plan::Region> regions = grow_skin(made, task, skin_options(task, budget, base, request));
-    late = open_late(made, task, budget);
-    regions.insert(regions.end(), late.regions.begin(), late.regions.end());
-    return regions;
-  });
-  c.unopened = std::move(late.unopened);
+  const auto made_with = [&](std::int64_t most_quads, bool skin) {
+    LateTopology late;
+    Candidate c = assemble_candidate(task, working, *map, origin, [&](Construction& made) {
+      std::vector<Plan::Region> regions = grow_skin(made, task, skin ? skin_options(task, budget, base, request) : SkinOptions());
+      late = open_late(made, task, most_quads);
+      regions.insert(regions.end(), late.regions.begin(), late.regions.end());
+      return regions;
+    });
+    c.unopened = std::move(late.unopened);
+    return c;
+  };
+  Candidate c = made_with(most_quads_to_open(options, budget.vertices), true);
+  if (options.refinement == Refinement::Uniform) return c;
+  // Of a level as fine as the last one that something opens on, or grows skin on, it may be too much.
+  for (const bool skin : {true, false})
+    if (!is_within(options, c)) c = made_with(budget.vertices, skin);
+  if (!is_within(options, c)) close_finest(c);
   return c;
 }
 

@@ -14,6 +14,8 @@
 namespace hybrid_mesh {
 namespace {
 
+constexpr double kMostLever = 3;  // times the distance of its samples, a vertex moves in a round
+
 // The mesh split into triangles, quads along the diagonal that leaves the flatter pair, and what lies across each triangle's edges. A coarse mesh may
 // have two faces with the same diagonal, so that adjacency goes by faces' sides, not by pairs of vertices of triangles.
 struct TriangleCover {
@@ -309,6 +311,7 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
     progress.check();
     for (Eigen::Matrix3d& b : matrix.block) b.setZero();
     std::vector<Vec3> right(n, Vec3::Zero());
+    std::vector<double> pull(n, 0), hold(n, 0);  // of the samples at each vertex, and how firmly they hold it
     const double a = options.tangential;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (i % 65536 == 0) progress.check();
@@ -319,10 +322,15 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
       for (int p = 0; p < 3; ++p) {
         if (anchors[i].w[p] == 0) continue;
         right[anchors[i].v[p]] += anchors[i].w[p] * target;
+        pull[anchors[i].v[p]] += anchors[i].w[p] * weight;
+        hold[anchors[i].v[p]] += anchors[i].w[p] * anchors[i].w[p] * weight;
         for (int q = 0; q < 3; ++q)
           if (anchors[i].w[q] != 0) matrix.block[matrix.find(anchors[i].v[p], anchors[i].v[q])] += anchors[i].w[p] * anchors[i].w[q] * metric;
       }
     }
+    // A vertex all of whose samples are at the far ends of its faces would be thrown by the lever that they are: this much holds it where it is.
+    std::vector<double> damping(n);
+    for (int v = 0; v < n; ++v) damping[v] = std::max(0.0, pull[v] / kMostLever - hold[v]);
     // The Laplacian's normal part stays what it is (curvature), its tangential part is drawn to zero.
     const std::vector<Vec3> normals = vertex_normals(mesh);
     std::vector<Vec3> wanted(n);
@@ -331,7 +339,7 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
     const auto apply = [&](const std::vector<Vec3>& x, std::vector<Vec3>& y) {
       for_all(n, [&](int v) { bent[v] = fixed[v] ? Vec3(Vec3::Zero()) : Vec3(regularizer[v] * neighbours.laplacian(x, v)); });
       for_all(n, [&](int v) {
-        Vec3 sum = neighbours.transposed(bent, v);
+        Vec3 sum = neighbours.transposed(bent, v) + damping[v] * x[v];
         for (int k = matrix.row[v]; k < matrix.row[v + 1]; ++k) sum.noalias() += matrix.block[k] * x[matrix.column[k]];
         y[v] = fixed[v] ? Vec3(Vec3::Zero()) : sum;
       });
@@ -339,7 +347,7 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
     // Conjugate gradients on the free vertices, preconditioned by the diagonal blocks.
     std::vector<Eigen::Matrix3d> inverse(n);
     for_all(n, [&](int v) {
-      const double diagonal = 1.25 * regularizer[v];
+      const double diagonal = 1.25 * regularizer[v] + damping[v];
       inverse[v] = (matrix.block[matrix.find(v, v)] + (diagonal + 1e-300) * Eigen::Matrix3d::Identity()).inverse();
     });
     std::vector<Vec3> residual(n), z(n), direction(n), image(n);

@@ -140,10 +140,11 @@ class LateOpening {
 
 }  // namespace
 
-LateTopology open_late(Construction& made, const RemeshTask& task, const Budget& budget) {
-  // An adaptive mesh keeps no more of a fine level than what opens there.
-  const int finer = task.options.refinement == Refinement::Adaptive ? 4 : 1;
-  return LateOpening(made, task, finer * budget.vertices).run();
+std::int64_t most_quads_to_open(const RemeshOptions& options, std::int64_t vertices) {
+  constexpr std::int64_t deeper = 4;
+  return options.refinement == Refinement::Adaptive ? deeper * vertices : vertices;
 }
+
+LateTopology open_late(Construction& made, const RemeshTask& task, std::int64_t most_quads) { return LateOpening(made, task, most_quads).run(); }
 
 }  // namespace hybrid_mesh

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "construction/construction.h"
-#include "remesh/budget.h"
 #include "remesh/plan.h"
+#include "remesh/source.h"
 
 namespace hybrid_mesh {
 
@@ -17,8 +18,11 @@ struct LateTopology {
   std::vector<std::pair<int, std::string>> unopened;  // events that found no room before the last level, and why
 };
 
+// Of the finest level on which something may open. An adaptive mesh keeps no more of it than what opens there.
+std::int64_t most_quads_to_open(const RemeshOptions& options, std::int64_t vertices);
+
 // Opens the events of the construction's surface, each on the first level whose quads can show it and have room for it. Levels are made as they are
-// needed, up to the last one that the budget has.
-LateTopology open_late(Construction& made, const RemeshTask& task, const Budget& budget);
+// needed, up to the last one that has at most so many quads.
+LateTopology open_late(Construction& made, const RemeshTask& task, std::int64_t most_quads);
 
 }  // namespace hybrid_mesh

@@ -14,6 +14,7 @@
 #include "layout/operations/region_uncutting.h"
 #include "layout/regions/disk_drawing.h"
 #include "layout/regions/patch_sets.h"
+#include "layout/regions/piece_drawing.h"
 #include "layout/regions/region_layout.h"
 #include "layout/regions/region_pattern.h"
 #include "layout/regions/ring_drawing.h"
@@ -134,8 +135,8 @@ std::optional<DrawnEdit> even_in(const RegionSurface& surface, const LocalRegion
   return std::nullopt;
 }
 
-// The region cut along an edit's quads: along their outline where that is known, else drawn in a disk or a ring. `spoke`: see rows_edit(); empty for
-// other edits. `surface` may get further points.
+// The region cut along an edit's quads: along their outline where that is known, else drawn in its disks and rings. `spoke`: see rows_edit(); empty
+// for other edits. `surface` may get further points.
 PatchedSurface lay_out(RegionSurface& surface, const PatchRegion& region, const LayoutEdit& edit, const LayoutOutline& known, std::vector<int> spoke,
                        const Progress& progress) {
   if (known.nodes.empty() && region.is_disk()) return draw_quads(surface, edit);
@@ -143,6 +144,7 @@ PatchedSurface lay_out(RegionSurface& surface, const PatchRegion& region, const 
     if (spoke.empty()) spoke = find_spoke(edit.quads, static_cast<int>(region.corners.size()), region.rims[1]);
     return draw_ring(surface, edit, spoke);
   }
+  if (known.nodes.empty() && has_drawable_pieces(region)) return draw_pieces(surface, region, edit);
   PatchedSurface piece = lay_out_region(surface, known.nodes.empty() ? spread_outline(surface, edit) : known, progress);
   if (piece.patch.empty()) throw NoMap("there is no way to lay out its new quads");
   return piece;

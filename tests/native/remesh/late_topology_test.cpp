@@ -174,6 +174,21 @@ TEST(LateTopology, ComponentsPartOnAFinerLevel) {
   EXPECT_EQ(level_topologies(r).back().components, 2);
 }
 
+// Many joints take quads of fine levels, more than a small mesh may have: then some are in the base.
+TEST(LateTopology, TheBoundOnVerticesHoldsWhateverOpens) {
+  PolygonSoup balls;
+  for (int i = 0; i < 8; ++i) testing::add(balls, ball(8, 2, Vec3(2.3 * (i % 4), 2.3 * (i / 4), 0.1 * i), 0.7 + 0.05 * i));
+  for (const std::int64_t vertices : {700, 1500}) {
+    RemeshOptions options = late(vertices, Refinement::Adaptive);
+    options.components = Components::Joined;
+    const RemeshResult r = run(balls, options);
+    expect_sound(r);
+    expect_levels_as_reported(r);
+    EXPECT_LE(static_cast<std::int64_t>(r.final_mesh.points.size()), vertices);
+    EXPECT_EQ(level_topologies(r).back().components, 8);
+  }
+}
+
 TEST(LateTopology, BoundariesOpenOnAFinerLevel) {
   const PolygonSoup open = ball(16, 0.7);
   const RemeshResult r = run(open, late(3000));
@@ -201,7 +216,7 @@ TEST(LateTopology, NoiseIsClosedForGood) {
 
 // Caps a few triangles wide, side by side: no quads are small enough to come between them.
 TEST(LateTopology, SidesThatHaveNoRoomBesideEachOtherOpenAsOne) {
-  const RemeshResult r = run(to_soup(testing::noisy_ball(12, 4)), late(1500, Refinement::Adaptive));
+  const RemeshResult r = run(to_soup(testing::noisy_ball(12, 4)), late(4000, Refinement::Adaptive));
   expect_sound(r);
   expect_levels_as_reported(r);
   EXPECT_EQ(level_topologies(r).front().genus, 0) << r.report["topology"];
