@@ -17,6 +17,7 @@ from mathutils import Vector, noise
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import head_shape  # noqa: E402
+import implicit_shapes  # noqa: E402
 
 NECK = -1.40  # where the head's neck ends
 
@@ -180,10 +181,10 @@ def head(name, triangles, closed):
 
     def distance(points):
         away = head_shape.head(points)
-        return head_shape.without(away, points[:, 2] - NECK, 0.1) if closed else away
+        return implicit_shapes.without(away, points[:, 2] - NECK, 0.1) if closed else away
 
-    points, faces = head_shape.zero_set(distance, low - [0, 0, 4 * step if closed else 0], high, step)
-    points = head_shape.evened(distance, points, faces, step)
+    points, faces = implicit_shapes.zero_set(distance, low - [0, 0, 4 * step if closed else 0], high, step)
+    points = implicit_shapes.evened(distance, points, faces, step)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(points.tolist(), [], faces.tolist())
     obj = add(name, mesh)
