@@ -20,7 +20,6 @@ import tiles  # noqa: E402
 from tiles import coordinates  # noqa: E402
 
 CLOSED, OPEN = (0.72, 0.05, 0.03, 1), tiles.STROKE
-RADIUS = 0.009  # of a loop's tube, of what a tile shows
 NARROWEST = 0.64  # of a tile, which the text needs
 UNDER = 0.05  # room between a mesh and the two lines of text, of its size
 
@@ -34,6 +33,7 @@ def parsed():
     parser.add_argument("--tilt", type=float, default=0, metavar="DEGREES", help="toward the camera: 90 shows it from above")
     parser.add_argument("--rows", type=int, default=1, help="of tiles")
     parser.add_argument("--levels", type=int, nargs="+", metavar="N", help="those to show, instead of the ones on which something opens")
+    parser.add_argument("--radius", type=float, default=0.009, help="of a loop's tube, of what a tile shows")
     parser.add_argument("--samples", type=int, default=64, help="of the picture's pixels")
     parser.add_argument("--percent", type=int, default=100, help="of the picture's full size")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
@@ -66,7 +66,7 @@ def closed_loops(plan, to_object):
     return [([numpy.array(loop + loop[:1]) @ rotation.T + shift for loop in event["loops"]], event["level"]) for event in plan["topology"]]
 
 
-def whole_tiles(sheet, inks, objects, levels, numbers, events, rotation):
+def whole_tiles(sheet, inks, objects, levels, numbers, events, rotation, radius):
     """A tile a level: the mesh, with the loops that are closed there in one colour and those that are open in the other. Also width and height of a tile."""
     meshes = [objects[f"N{levels[k]['level']}"].data for k in numbers]
     # One scale for all: levels are to be compared. The base's corners may reach farther than the scan.
@@ -81,7 +81,7 @@ def whole_tiles(sheet, inks, objects, levels, numbers, events, rotation):
         for is_open in (False, True):
             lines = [line for loops, opens in events if (opens <= level["level"]) == is_open for line in loops]
             if lines and k > 0:  # the base is too coarse to have them on it
-                blocks.append(tiles.tubes(lines, RADIUS * size / 2, inks[is_open]))
+                blocks.append(tiles.tubes(lines, radius * size / 2, inks[is_open]))
         shown.append(tiles.Tile(f"N{level['level']}: {level['quads']:,} quads\n{topology(level, levels)}", blocks, around))
     tall += UNDER * size
     return shown, max(NARROWEST, across / max(across, tall)), tall / max(across, tall)
@@ -103,7 +103,7 @@ def main():
     inks = {False: picture.plain_material("Closed", CLOSED), True: sheet.stroke}
     rotation = tiles.view(numpy.radians(arguments.turn), numpy.radians(arguments.tilt))
     numbers = [k for k, level in enumerate(levels) if level["level"] in arguments.levels] if arguments.levels else shown_levels(levels)
-    shown, wide, high = whole_tiles(sheet, inks, objects, levels, numbers, events, rotation)
+    shown, wide, high = whole_tiles(sheet, inks, objects, levels, numbers, events, rotation, arguments.radius)
     for tile in shown:
         print(tile.text.replace("\n", ", "))
     columns = -(-len(shown) // arguments.rows)
