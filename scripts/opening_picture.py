@@ -32,7 +32,6 @@ def parsed():
     parser.add_argument("--turn", type=float, default=numpy.degrees(picture.TURN), metavar="DEGREES", help="about the vertical")
     parser.add_argument("--tilt", type=float, default=0, metavar="DEGREES", help="toward the camera: 90 shows it from above")
     parser.add_argument("--rows", type=int, default=1, help="of tiles")
-    parser.add_argument("--levels", type=int, nargs="+", metavar="N", help="those to show, instead of the ones on which something opens")
     parser.add_argument("--radius", type=float, default=0.009, help="of a loop's tube, of what a tile shows")
     parser.add_argument("--samples", type=int, default=64, help="of the picture's pixels")
     parser.add_argument("--percent", type=int, default=100, help="of the picture's full size")
@@ -66,8 +65,9 @@ def closed_loops(plan, to_object):
     return [([numpy.array(loop + loop[:1]) @ rotation.T + shift for loop in event["loops"]], event["level"]) for event in plan["topology"]]
 
 
-def whole_tiles(sheet, inks, objects, levels, numbers, events, rotation, radius):
+def whole_tiles(sheet, inks, objects, levels, events, rotation, radius):
     """A tile a level: the mesh, with the loops that are closed there in one colour and those that are open in the other. Also width and height of a tile."""
+    numbers = shown_levels(levels)
     meshes = [objects[f"N{levels[k]['level']}"].data for k in numbers]
     # One scale for all: levels are to be compared. The base's corners may reach farther than the scan.
     around = numpy.concatenate([coordinates(mesh) for mesh in meshes])
@@ -102,8 +102,7 @@ def main():
     sheet = tiles.Sheet()
     inks = {False: picture.plain_material("Closed", CLOSED), True: sheet.stroke}
     rotation = tiles.view(numpy.radians(arguments.turn), numpy.radians(arguments.tilt))
-    numbers = [k for k, level in enumerate(levels) if level["level"] in arguments.levels] if arguments.levels else shown_levels(levels)
-    shown, wide, high = whole_tiles(sheet, inks, objects, levels, numbers, events, rotation, arguments.radius)
+    shown, wide, high = whole_tiles(sheet, inks, objects, levels, events, rotation, arguments.radius)
     for tile in shown:
         print(tile.text.replace("\n", ", "))
     columns = -(-len(shown) // arguments.rows)
