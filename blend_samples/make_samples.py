@@ -16,9 +16,13 @@ from mathutils import Vector, noise
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
+import cat_shape  # noqa: E402
+import foot_shape  # noqa: E402
 import head_shape  # noqa: E402
+import implicit_shapes  # noqa: E402
 
 NECK = -1.40  # where the head's neck ends
+GRAIN = 2.0**-13  # of what is two units large
 
 
 def read_ply(path):
@@ -174,23 +178,50 @@ def transforms():
     return star
 
 
-def head(name, triangles, closed):
-    """A head of irregular triangles as a scanner gives them. Its neck ends in a boundary loop, or in a rounded cap."""
-    low, high, step = numpy.array([-1.0, -1.3, NECK]), [1.0, 1.2, 1.2], 0.02
+def implicit(name, shapes, triangles, grain=None):
+    """A smooth mesh of irregular triangles as a scanner gives them. shapes: (distance, low, high, lattice step) of each component.
 
-    def distance(points):
-        away = head_shape.head(points)
-        return head_shape.without(away, points[:, 2] - NECK, 0.1) if closed else away
-
-    points, faces = head_shape.zero_set(distance, low - [0, 0, 4 * step if closed else 0], high, step)
-    points = head_shape.evened(distance, points, faces, step)
+    grain: coordinates are made multiples of it, which a compressed file is smaller for.
+    """
+    points, faces = [], []
+    for distance, low, high, step in shapes:
+        some, corners = implicit_shapes.zero_set(distance, low, high, step)
+        faces.append(corners + sum(map(len, points)))
+        points.append(implicit_shapes.evened(distance, some, corners, step))
+    points, faces = numpy.concatenate(points), numpy.concatenate(faces)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(points.tolist(), [], faces.tolist())
     obj = add(name, mesh)
     thin_out(obj, triangles / len(faces))
+    if grain:
+        for vertex in mesh.vertices:
+            vertex.co = [round(value / grain) * grain for value in vertex.co]
     for polygon in mesh.polygons:
         polygon.use_smooth = True
     return obj
+
+
+def head(name, triangles, closed):
+    """A head whose neck ends in a boundary loop, or in a rounded cap."""
+    low, high, step = numpy.array([-1.0, -1.3, NECK]), [1.0, 1.2, 1.2], 0.02
+
+    def distance(points):
+        away = head_shape.head(points)
+        return implicit_shapes.without(away, points[:, 2] - NECK, 0.1) if closed else away
+
+    return implicit(name, [(distance, low - [0, 0, 4 * step if closed else 0], high, step)], triangles)
+
+
+def bones(name, shapes, triangles):
+    """Bones of the foot, as long as two units from the first to the last, standing on the ground."""
+    low, high = numpy.min([low for _, low, _ in shapes], axis=0), numpy.max([high for _, _, high in shapes], axis=0)
+    size, middle = 2 / (high - low).max(), [*(low + high)[:2] / 2, 0]
+
+    def placed(distance, low, high):
+        step = 0.06 * (high - low).max() ** 0.5 * size
+        return lambda points: size * distance(points / size + middle), (low - middle) * size, (high - middle) * size, step
+
+    return implicit(name, [placed(*shape) for shape in shapes], triangles, GRAIN)
 
 
 def six_quads(obj):
@@ -244,6 +275,12 @@ def main():
         finish("knot", knot("knot"))
     if wanted("transforms"):
         finish("transforms", transforms())
+    if wanted("tail"):
+        finish("tail", implicit("cat", [(cat_shape.cat, [-0.65, -0.95, -0.1], [0.65, 1.8, 2.15], 0.03)], 12_000, GRAIN))
+    if wanted("two_bones"):
+        finish("two_bones", bones("two bones", foot_shape.two_bones(), 8_000))
+    if wanted("foot"):
+        finish("foot", bones("foot", foot_shape.foot(), 13_000))
     if wanted("head"):
         finish("head", head("head", 18_000, closed=False))
     if wanted("head_layout"):

@@ -58,7 +58,7 @@ def main():
         faces, stretch = head(mesh, *box), attribute(mesh, "stretch")
         print(f"{text}: {len(mesh.polygons)} quads, stretch at most {stretch.max():.1f}, of the head {stretch[faces].max():.1f}")
         shown.append(tiles.Tile(f"{text}, stretch {stretch[faces].max():.0f}", [sheet.shown(tiles.part(mesh, faces), 1.0, colors=tiles.stretched(mesh)[faces])], around))
-    sheet.render(shown, len(shown), target, turn=0.6)
+    sheet.render(shown, len(shown), target, rotation=tiles.view(0.6))
 
 
 if __name__ == "__main__":

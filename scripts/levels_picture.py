@@ -170,8 +170,8 @@ def build(parts):
     return collection, columns, rows, step
 
 
-def light_and_camera(collection, columns, rows, step, wide=1.0):
-    """wide: of a tile, where it is narrower than its step."""
+def light_and_camera(collection, columns, rows, step, wide=1.0, high=1.0):
+    """wide, high: of a tile, where it is narrower or lower than its step."""
     scene = bpy.context.scene
     world = scene.world or bpy.data.worlds.new("World")
     scene.world = world
@@ -192,14 +192,14 @@ def light_and_camera(collection, columns, rows, step, wide=1.0):
         collection.objects.link(obj)
     camera = bpy.data.cameras.new("Camera")
     camera.type = "ORTHO"
-    camera.ortho_scale = max(columns * wide * step, rows * 1.14 * step)
+    camera.ortho_scale = max(columns * wide * step, rows * (high + 0.14) * step)
     camera.clip_end = 100 * step
     obj = bpy.data.objects.new("Camera", camera)
     obj.location, obj.rotation_euler = (0, -5 * step, -0.03 * step), (numpy.pi / 2, 0, 0)
     collection.objects.link(obj)
     scene.camera = obj
     render = scene.render
-    render.resolution_x, render.resolution_y = int(columns * wide * TILE), int(rows * TILE * 1.14)
+    render.resolution_x, render.resolution_y = int(columns * wide * TILE), int(rows * TILE * (high + 0.14))
     render.resolution_percentage = 100
     render.image_settings.file_format = "PNG"
     render.image_settings.color_mode = "RGB"

@@ -20,9 +20,8 @@ import tiles  # noqa: E402
 from tiles import coordinates  # noqa: E402
 
 CLOSED, OPEN = (0.72, 0.05, 0.03, 1), tiles.STROKE
-RADIUS = 0.009  # of a loop's tube, of what a tile shows
 NARROWEST = 0.64  # of a tile, which the text needs
-UNDER = 0.05  # room between a mesh and the two lines of text, of its height
+UNDER = 0.05  # room between a mesh and the two lines of text, of its size
 
 
 def parsed():
@@ -31,6 +30,9 @@ def parsed():
     parser.add_argument("hierarchy")
     parser.add_argument("picture")
     parser.add_argument("--turn", type=float, default=numpy.degrees(picture.TURN), metavar="DEGREES", help="about the vertical")
+    parser.add_argument("--tilt", type=float, default=0, metavar="DEGREES", help="toward the camera: 90 shows it from above")
+    parser.add_argument("--rows", type=int, default=1, help="of tiles")
+    parser.add_argument("--radius", type=float, default=0.009, help="of a loop's tube, of what a tile shows")
     parser.add_argument("--samples", type=int, default=64, help="of the picture's pixels")
     parser.add_argument("--percent", type=int, default=100, help="of the picture's full size")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
@@ -49,29 +51,40 @@ def shown_levels(levels):
     return sorted({0, opening[0] - 1, *opening, len(levels) - 1})
 
 
+def topology(level, levels):
+    """What a tile says of a level's topology: what changes among the levels."""
+    said = [f"genus {level['genus']:.0f}"] if any(one["genus"] for one in levels) else []
+    if any(one["components"] > 1 for one in levels):
+        said.append("1 component" if level["components"] == 1 else f"{level['components']} components")
+    return ", ".join(said)
+
+
 def closed_loops(plan, to_object):
     """The plan's loops as closed lines in the space of the level's objects, a list an event, each with the level on which it opens."""
     rotation, shift = to_object[:3, :3], to_object[:3, 3]
     return [([numpy.array(loop + loop[:1]) @ rotation.T + shift for loop in event["loops"]], event["level"]) for event in plan["topology"]]
 
 
-def whole_tiles(sheet, inks, objects, levels, events):
-    """A tile a level: the mesh, with the loops that are closed there in one colour and those that are open in the other."""
+def whole_tiles(sheet, inks, objects, levels, events, rotation, radius):
+    """A tile a level: the mesh, with the loops that are closed there in one colour and those that are open in the other. Also width and height of a tile."""
     numbers = shown_levels(levels)
     meshes = [objects[f"N{levels[k]['level']}"].data for k in numbers]
     # One scale for all: levels are to be compared. The base's corners may reach farther than the scan.
     around = numpy.concatenate([coordinates(mesh) for mesh in meshes])
-    height = numpy.ptp(around[:, 2])
-    around = numpy.concatenate([around, [around[around[:, 2].argmin()] - [0, 0, UNDER * height]]])
+    seen = around @ rotation.T
+    across, tall = numpy.ptp(seen, axis=0)[[0, 2]]
+    size = max(across, tall)
+    around = numpy.concatenate([around, [(seen[seen[:, 2].argmin()] - [0, 0, UNDER * size]) @ rotation]])
     shown = []
     for k, mesh in zip(numbers, meshes):
-        level, blocks = levels[k], [sheet.shown(mesh, height)]
+        level, blocks = levels[k], [sheet.shown(mesh, size)]
         for is_open in (False, True):
             lines = [line for loops, opens in events if (opens <= level["level"]) == is_open for line in loops]
             if lines and k > 0:  # the base is too coarse to have them on it
-                blocks.append(tiles.tubes(lines, RADIUS * height / 2, inks[is_open]))
-        shown.append(tiles.Tile(f"N{level['level']}: {level['quads']:,} quads\ngenus {level['genus']:.0f}", blocks, around))
-    return shown
+                blocks.append(tiles.tubes(lines, radius * size / 2, inks[is_open]))
+        shown.append(tiles.Tile(f"N{level['level']}: {level['quads']:,} quads\n{topology(level, levels)}", blocks, around))
+    tall += UNDER * size
+    return shown, max(NARROWEST, across / max(across, tall)), tall / max(across, tall)
 
 
 def main():
@@ -88,13 +101,12 @@ def main():
     events = closed_loops(plan, numpy.array(objects["N0"].matrix_world.inverted()))
     sheet = tiles.Sheet()
     inks = {False: picture.plain_material("Closed", CLOSED), True: sheet.stroke}
-    shown = whole_tiles(sheet, inks, objects, levels, events)
-    turn, wide = numpy.radians(arguments.turn), NARROWEST
+    rotation = tiles.view(numpy.radians(arguments.turn), numpy.radians(arguments.tilt))
+    shown, wide, high = whole_tiles(sheet, inks, objects, levels, events, rotation, arguments.radius)
     for tile in shown:
         print(tile.text.replace("\n", ", "))
-        across, high = numpy.ptp(tile.around @ numpy.array([[numpy.cos(turn), -numpy.sin(turn), 0], [0, 0, 1]]).T, axis=0)
-        wide = max(wide, min(1, across / high))
-    sheet.render(shown, len(shown), arguments.picture, arguments.samples, turn=turn, percent=arguments.percent, wide=wide)
+    columns = -(-len(shown) // arguments.rows)
+    sheet.render(shown, columns, arguments.picture, arguments.samples, rotation=rotation, percent=arguments.percent, wide=wide, high=high)
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ def main():
     for name in ("N3", "N5"):
         mesh = levels[name].data
         shown.append(tiles.Tile(f"{name}: {len(mesh.polygons):,} quads", [sheet.shown(mesh, colors=PASTELS[attribute(mesh, "root") % len(PASTELS)])], around))
-    sheet.render(shown, len(shown), target, turn=numpy.radians(33), percent=85)
+    sheet.render(shown, len(shown), target, rotation=tiles.view(numpy.radians(33)), percent=85)
 
 
 if __name__ == "__main__":

@@ -6,12 +6,13 @@ import os
 import bmesh
 import bpy
 import levels_picture as picture
+import mathutils
 import numpy
 
 REGION, BUFFER = numpy.array([0.82, 0.30, 0.24]), numpy.array([0.93, 0.76, 0.36])
 INK, STROKE = (0.03, 0.035, 0.05, 1), (0.01, 0.08, 0.60, 1)
 STEP = 2.3  # between the middles of two tiles; what is shown in one is two units large
-ROW = 1.14 * STEP
+TEXT = 0.14  # room for a line below a tile, of STEP
 LETTER = 0.17  # height of a line of text
 
 
@@ -74,6 +75,12 @@ def part(mesh, faces):
     return made
 
 
+def view(turn, tilt=0.0):
+    """The rotation (3, 3) of what is turned about the vertical, then tilted toward the camera, in radians."""
+    cos, sin, low, high = numpy.cos(turn), numpy.sin(turn), numpy.cos(tilt), numpy.sin(tilt)
+    return numpy.array([[1, 0, 0], [0, low, -high], [0, high, low]]) @ numpy.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
+
+
 def tubes(lines, radius, ink):
     curve = bpy.data.curves.new("tubes", "CURVE")
     curve.dimensions, curve.bevel_depth, curve.use_fill_caps = "3D", radius, True
@@ -117,17 +124,17 @@ class Sheet:
         made.materials.append(self.quads)
         return made
 
-    def render(self, tiles, columns, path, samples=None, scene_path=None, turn=picture.TURN, percent=100, wide=1.0):
-        """Puts tiles side by side, each turned by so much about the vertical, and renders them, at a percentage of the full size; saves the scene if asked.
+    def render(self, tiles, columns, path, samples=None, scene_path=None, rotation=view(picture.TURN), percent=100, wide=1.0, high=1.0):
+        """Puts tiles side by side, each with this rotation, and renders them, at a percentage of the full size; saves the scene if asked.
 
-        wide: of a tile, for what is taller than wide.
+        wide, high: of a tile, for what is taller than wide or wider than tall.
         """
         scene = bpy.context.scene
         for obj in scene.objects:
             obj.hide_render = True
             obj.hide_set(True)
-        collection, rows = self._arranged(tiles, columns, turn, wide)
-        picture.light_and_camera(collection, columns, rows, STEP, wide)
+        collection, rows = self._arranged(tiles, columns, rotation, wide, high)
+        picture.light_and_camera(collection, columns, rows, STEP, wide, high)
         scene.cycles.samples = samples or picture.SAMPLES
         scene.render.resolution_percentage = percent
         scene.render.filepath = os.path.abspath(path)
@@ -135,21 +142,21 @@ class Sheet:
         if scene_path:
             bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(scene_path), compress=True)
 
-    def _arranged(self, tiles, columns, turn, wide):
+    def _arranged(self, tiles, columns, rotation, wide, high):
         collection = bpy.data.collections.new("Side by side")
         bpy.context.scene.collection.children.link(collection)
         rows = -(-len(tiles) // columns)
-        rotation = numpy.array([[numpy.cos(turn), -numpy.sin(turn), 0], [numpy.sin(turn), numpy.cos(turn), 0], [0, 0, 1]])
+        angles = mathutils.Matrix(rotation.tolist()).to_euler()
         for number, tile in enumerate(tiles):
-            x, z = (number % columns - (columns - 1) / 2) * wide * STEP, ((rows - 1) / 2 - number // columns) * ROW
+            x, z = (number % columns - (columns - 1) / 2) * wide * STEP, ((rows - 1) / 2 - number // columns) * (high + TEXT) * STEP
             around = tile.around @ rotation.T
             size = 2.0 / numpy.ptp(around[:, [0, 2]], axis=0).max()
             middle = size * (around.min(axis=0) + around.max(axis=0)) / 2
             for block in tile.blocks:
                 obj = bpy.data.objects.new(tile.text.replace("\n", ", "), block)
-                obj.rotation_euler, obj.scale = (0, 0, turn), (size, size, size)
+                obj.rotation_euler, obj.scale = angles, (size, size, size)
                 obj.location = (x - middle[0], -middle[1], z - middle[2])
                 collection.objects.link(obj)
             lines = tile.text.count("\n")  # above the last one, which stays where a single one is
-            collection.objects.link(picture.label(tile.text, (x, -4, z - 0.56 * STEP + LETTER * lines), LETTER, self.ink))
+            collection.objects.link(picture.label(tile.text, (x, -4, z - (high / 2 + 0.06) * STEP + LETTER * lines), LETTER, self.ink))
         return collection, rows
