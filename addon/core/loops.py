@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loops around handles and tunnels: closed lines, as text, as strokes and as cycles of a surface's points."""
+"""Loops around handles and tunnels: closed lines, as text, as strokes and along a surface's points."""
 
 import json
 
@@ -59,22 +59,6 @@ def numbers_at(points, places):
 
 
 def moved_to(points, places):
-    """Places that are points' to within rounding, exactly there: a cycle of a surface's points is then known for what it is."""
+    """Places that are points' to within rounding, exactly there: the native search then knows a cycle of a surface's points for what it is."""
     numbers = numbers_at(points, places)
     return numpy.where(numbers[:, None] >= 0, numpy.asarray(points, dtype=float)[numbers], places)
-
-
-def is_cycle(numbers, triangles):
-    """Whether points, given by their numbers, are a simple cycle along edges of (n, 3) triangles."""
-    numbers, triangles = numpy.asarray(numbers, dtype=numpy.int64), numpy.asarray(triangles, dtype=numpy.int64)
-    if len(numbers) < 3 or numbers.min() < 0 or len(numpy.unique(numbers)) < len(numbers):
-        return False
-    count = max(int(numbers.max()), int(triangles.max(initial=0))) + 1
-    near = triangles[numpy.isin(triangles, numbers).sum(1) >= 2]
-    sides = numpy.concatenate([near[:, [0, 1]], near[:, [1, 2]], near[:, [2, 0]]])
-    wanted = numpy.stack([numbers, numpy.roll(numbers, -1)], axis=1)
-    return bool(numpy.isin(_keys(wanted, count), _keys(sides, count)).all())
-
-
-def _keys(pairs, count):
-    return pairs.min(1) * count + pairs.max(1)

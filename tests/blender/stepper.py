@@ -80,7 +80,7 @@ def wait_until(condition, limit=200.0):
 
 
 def cancel_by_escape(start, unchanged, delays):
-    """Starts a job and presses Esc some seconds later, once for each delay. Use with `yield from`.
+    """Starts a job and presses Esc some seconds later, or once a function says so, for each of the delays. Use with `yield from`.
 
     start(): runs the operator, in the context of the 3D view; unchanged(): asserts that nothing is left of it.
     """
@@ -89,11 +89,14 @@ def cancel_by_escape(start, unchanged, delays):
     for delay in delays:
         with bpy.context.temp_override(**view()):
             assert start() == {"RUNNING_MODAL"}
-        yield delay
+        if callable(delay):
+            yield from wait_until(delay)
+        else:
+            yield delay
         assert jobs.running(), "it was done before Esc could be pressed"
         press("ESC")
         seconds = yield from wait_until(lambda: not jobs.running(), 10)
-        print(f"Esc after {delay} s: ended in {seconds:.2f} s")
+        print(f"Esc {'where it was asked for' if callable(delay) else f'after {delay} s'}: ended in {seconds:.2f} s")
         yield 0.2
         unchanged()
         yield 1

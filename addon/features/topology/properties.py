@@ -54,9 +54,13 @@ def loops_of(surface):
     return surface.hybrid_mesh_topology.loops if surface.is_property_set("hybrid_mesh_topology") else ()
 
 
-def world_points(loop, source):
-    """The points of a loop in world space, exactly where the meshes.Source has its own; raises LoopError."""
-    return lines.moved_to(source.mesh.points, arrays.transformed(lines.from_text(loop.points), source.matrix))
+def world_lines(loops, source):
+    """The points of each loop in world space, exactly where the meshes.Source has its own; raises LoopError."""
+    found = [arrays.transformed(lines.from_text(loop.points), source.matrix) for loop in loops]
+    if not found:
+        return []
+    # All at once: the surface's points are put in order but once.
+    return numpy.split(lines.moved_to(source.mesh.points, numpy.concatenate(found)), numpy.cumsum([len(points) for points in found])[:-1])
 
 
 def plan_of(surface, source):
@@ -64,11 +68,12 @@ def plan_of(surface, source):
     found = loops_of(surface)
     if not len(found):
         return ""
-    return plans.topology_plan([(world_points(loop, source), loop.level) for loop in found if loop.use and loop.level != 0])
+    late = [loop for loop in found if loop.use and loop.level != 0]
+    return plans.topology_plan([(points, loop.level) for loop, points in zip(late, world_lines(late, source), strict=True)])
 
 
 def write(surface, source, found, settings):
-    """Puts loops in place of those of a mesh object. found: as core.loop_search has them; settings: (level, use) of each of the loops that there were."""
+    """Puts loops in place of those of a mesh object. found: as the native find_loops() gives them; settings: (level, use) of each of the loops that there were."""
     values = surface.hybrid_mesh_topology
     values.loops.clear()
     inverse = numpy.linalg.inv(source.matrix)
@@ -78,7 +83,7 @@ def write(surface, source, found, settings):
         loop = values.loops.add()
         loop.kind = one["kind"].upper()
         loop.length = one["length"] / diagonal
-        loop.points = lines.to_text(arrays.transformed(numpy.array(one["points"]), inverse))
+        loop.points = lines.to_text(arrays.transformed(one["positions"], inverse))
         loop.drawn = one["drawn"]
         if one["source"] >= 0:
             _set(loop, "level", settings[one["source"]][0])
