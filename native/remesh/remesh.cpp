@@ -172,8 +172,8 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
   place(best, source.placement, base.series.get());
   report["seconds"] = watch.json();
   progress(1);
-  return {std::move(best.hierarchy), std::move(best.final_mesh), std::move(source.repaired),
-          std::move(best.plan),      std::move(best.plan_root),  std::move(report)};
+  return {std::move(best.hierarchy), std::move(best.final_mesh), std::move(source.repaired), std::move(best.plan),
+          std::move(best.plan_root), std::move(best.opened),     std::move(report)};
 }
 
 }  // namespace

@@ -149,3 +149,28 @@ def test_components_and_handles_of_one_ball(refinement):
     assert [(level["components"], level["genus"]) for level in told if level["name"].startswith("N")] == [
         (level["components"], level["genus"]) for level in levels
     ]
+    # Faces know what has opened where they were put in: by the numbers of the report, which are the plan's.
+    events = json.loads(result.plan)["topology"]
+    told = [entry for kind in ("loops", "tubes", "boundaries") for entry in report["topology"][kind]]
+    assert {entry["number"]: entry["level"] for entry in told} == {number: event["level"] for number, event in enumerate(events, 1)}
+    hierarchy = result.hierarchy
+    for name in hierarchy.level_names:
+        level, depth = hierarchy.level(name), int(name[1:])
+        assert level["opened"].shape == level["opened_level"].shape == level["patch"].shape
+        for number in set(level["opened"].tolist()) - {0}:
+            faces = level["opened"] == number
+            assert set(level["opened_level"][faces].tolist()) == {events[number - 1]["level"]} and events[number - 1]["level"] <= depth
+            assert level["irregular"][faces].all()
+        assert not level["opened_level"][level["opened"] == 0].any()
+    operations = [hierarchy.operation(i) for i in range(hierarchy.operation_count)]
+    assert sorted(event for operation in operations for event in operation["opens"]) == list(range(len(events)))
+    assert all(events[event]["level"] == operation["level"] for operation in operations for event in operation["opens"])
+
+
+def test_nobody_knows_what_opened_in_a_file(tmp_path):
+    """A file has the quads alone."""
+    result = _native.remesh(*torus(30, 15), {"vertices": 1000, "base": "min"})
+    assert "opened" in result.final_mesh()
+    result.hierarchy.save(tmp_path / "torus.hmesh")
+    loaded = _native.load_hierarchy(tmp_path / "torus.hmesh")
+    assert "opened" not in loaded.final_mesh() and all(not loaded.operation(i)["opens"] for i in range(loaded.operation_count))
