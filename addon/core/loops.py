@@ -33,11 +33,58 @@ def closed(points, gap):
     if len(points) < 3 or not numpy.isfinite(points).all():
         return None
     between = numpy.linalg.norm(points[-1] - points[0])
-    length = numpy.linalg.norm(numpy.diff(points, axis=0), axis=1).sum()
+    length = _length(points)
     if between > gap or length <= _LEAST_LENGTH * between or length == 0:
         return None
     points = points[:-1] if between == 0 else points
     return points if len(points) >= 3 else None
+
+
+def closed_lines(strokes, gap):
+    """The closed lines that strokes make, each as its points and the places of its strokes in the list. A stroke whose own ends meet is one; others go on where the nearest end
+    of another one is within the gap: who draws around an arm has to turn the view.
+    """
+    lines, left = [], []
+    for number, stroke in enumerate(strokes):
+        stroke = numpy.asarray(stroke, dtype=float)
+        points = closed(stroke, gap)
+        if points is not None:
+            lines.append((points, [number]))
+        elif len(stroke) >= 2 and numpy.isfinite(stroke).all():
+            left.append((number, stroke))
+    met = _met_ends([stroke for _, stroke in left], gap)
+    seen = set()
+    for begin in range(len(left)):
+        # Along a stroke to its other end, on to the end that this one meets, until it is a stroke that was there already.
+        chain, end = [], 2 * begin
+        while end is not None and end // 2 not in seen:
+            seen.add(end // 2)
+            chain.append(end)
+            end = met.get(end ^ 1)
+        if end != 2 * begin or len(chain) < 2:
+            continue
+        pieces = [left[one // 2][1][:: -1 if one % 2 else 1] for one in chain]
+        apart = [numpy.linalg.norm(after[0] - before[-1]) for before, after in zip(pieces, [*pieces[1:], pieces[0]], strict=True)]
+        points = closed(numpy.concatenate(pieces), gap)
+        if points is not None and sum(map(_length, pieces)) > _LEAST_LENGTH * max(apart):
+            lines.append((points, sorted(left[one // 2][0] for one in chain)))
+    return lines
+
+
+def _met_ends(strokes, gap):
+    """Which ends of strokes meet, nearest first, each one other: {end: end}; end 2 i is the first point of stroke i, 2 i + 1 its last one."""
+    ends = numpy.array([place for stroke in strokes for place in (stroke[0], stroke[-1])]).reshape(-1, 3)
+    distances = numpy.linalg.norm(ends[:, None] - ends[None], axis=2)
+    pairs = [(distances[a, b], a, b) for a in range(len(ends)) for b in range(a + 1, len(ends)) if a // 2 != b // 2 and distances[a, b] <= gap]
+    met = {}
+    for _, a, b in sorted(pairs):
+        if a not in met and b not in met:
+            met[a], met[b] = b, a
+    return met
+
+
+def _length(points):
+    return float(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1).sum())
 
 
 def numbers_at(points, places):

@@ -29,6 +29,30 @@ def test_closed_strokes():
     assert loops.closed(SQUARE[:2], 9) is None and loops.closed(SQUARE[[0, 0, 0, 0]], 1) is None and loops.closed(SQUARE * numpy.nan, 1) is None
 
 
+def turned(numbers, line):
+    """A closed line's points from one of them on, in one of the two directions."""
+    line = numpy.asarray(line)
+    return any(numpy.array_equal(numpy.roll(way, -first, axis=0), numbers) for way in (line, line[::-1]) for first in range(len(line)))
+
+
+def test_strokes_go_on_where_others_end():
+    around = numpy.array([[numpy.cos(a), numpy.sin(a), 0] for a in numpy.linspace(0, 2 * numpy.pi, 25)])
+    front, back, beside = around[:13], around[12:], around[:, [2, 0, 1]] + 9
+    for one, other in ((front, back), (front[::-1], back), (front, back[::-1])):
+        ((line, numbers),) = loops.closed_lines([one, other], 0.01)
+        assert numbers == [0, 1] and {tuple(point) for point in line.round(6)} == {tuple(point) for point in around.round(6)}
+        sides = numpy.linalg.norm(line - numpy.roll(line, 1, axis=0), axis=1)
+        assert sides.max() < 1.01 * numpy.linalg.norm(around[1] - around[0])
+    # In thirds, beside one that is closed by itself, and one that is not.
+    found = loops.closed_lines([around[16:], beside, around[:9], beside[:5] + 3, around[8:17]], 0.01)
+    assert [numbers for _, numbers in found] == [[1], [0, 2, 4]] and turned(found[0][0], beside[:-1])
+    # Half of it, what is too far apart, ends that meet one other only, and scribbles as short as the gap.
+    assert loops.closed_lines([front], 0.01) == [] and loops.closed_lines([front, back * 1.02], 0.01) == []
+    assert loops.closed_lines([front, back[:6], back[6:]], 0.01) == []
+    assert loops.closed_lines([around[:2] * 0.01, around[1:3] * 0.01], 1) == []
+    assert loops.closed_lines([], 1) == [] and loops.closed_lines([numpy.full((5, 3), numpy.nan)], 1) == []
+
+
 def test_points_are_found_by_their_places():
     points = numpy.random.default_rng(2).normal(size=(500, 3))
     points[::7, 0] = 0.5  # many in a plane

@@ -70,6 +70,24 @@ def press(key):
     window.event_simulate(type=key, value="RELEASE", **where)
 
 
+def draw(path):
+    """Draws a line by mouse through places of the window, in pixels. Use with `yield from`."""
+    window = bpy.context.window_manager.windows[0]
+
+    def event(kind, value, place):
+        window.event_simulate(type=kind, value=value, x=int(place[0]), y=int(place[1]))
+
+    event("MOUSEMOVE", "NOTHING", path[0])
+    yield 0.2
+    event("LEFTMOUSE", "PRESS", path[0])
+    yield 0.1
+    for place in path:
+        event("MOUSEMOVE", "NOTHING", place)
+        yield 0.02
+    event("LEFTMOUSE", "RELEASE", path[-1])
+    yield 1
+
+
 def wait_until(condition, limit=200.0):
     """Yields until the condition holds; fails after `limit` seconds. Use with `yield from`; returns the seconds that it took."""
     began = time.monotonic()

@@ -246,6 +246,16 @@ def test_a_drawn_loop(world):
     assert numpy.abs(points_of(obj, values.loops[0]) - loop).max() < 1e-6
 
 
+def test_a_loop_drawn_from_two_sides(world):
+    obj = plate(world, 2)
+    line = around_bar(obj, 1)
+    draw(obj, [line[:21], line[:12] + 20, line[20:][::-1]])  # the second one goes on nowhere
+    assert bpy.ops.hybrid_mesh.draw_loop() == {"FINISHED"}
+    (loop,) = obj.hybrid_mesh_topology.loops
+    assert loop.drawn and loop.kind == "HANDLE" and len(read(layout_of(obj))) == 1
+    assert numpy.linalg.norm(points_of(obj, loop).mean(axis=0) - line[:-1].mean(axis=0)) < 1
+
+
 def test_found_loops_give_way_to_drawn_ones(world):
     obj = plate(world, 2)
     values = find(obj)

@@ -82,7 +82,7 @@ class HYBRID_MESH_OT_find_loops(_LoopJobOperator):
 
 
 class HYBRID_MESH_OT_draw_loop(_LoopJobOperator):
-    """Make loops of the closed strokes that are drawn on the mesh. Each becomes the shortest loop around what it goes around, and found ones in its way give place"""
+    """Make loops of the closed strokes that are drawn on the mesh, or of several that go on where another one ends. Each becomes the shortest loop around what it goes around, and found ones in its way give place"""
 
     bl_idname = "hybrid_mesh.draw_loop"
     bl_label = "Draw Loop"
@@ -95,12 +95,12 @@ class HYBRID_MESH_OT_draw_loop(_LoopJobOperator):
         surface = properties.surface_of(objects.active(context), context.scene)
         drawn = drawing.read_drawn(context, surface)
         gap = drawn.snap * objects.diagonal(surface)
-        chosen = [(stroke, points) for stroke in drawn.strokes if (points := lines.closed(stroke.points, gap)) is not None]
-        if not chosen:
-            raise ValueError(f"No stroke of {drawn.layout[0]} is closed: a loop ends where it begins")
+        closed = lines.closed_lines([stroke.points for stroke in drawn.strokes], gap)
+        if not closed:
+            raise ValueError(f"Nothing in {drawn.layout[0]} is closed: a loop ends where it begins, or where another stroke goes on")
         self._layout = drawn.layout
-        self._used = [(stroke.layer, stroke.number) for stroke, _ in chosen]
-        return [self.task(context, surface, list(properties.loops_of(surface)), [points for _, points in chosen], longest=0)]
+        self._used = [(drawn.strokes[number].layer, drawn.strokes[number].number) for _, numbers in closed for number in numbers]
+        return [self.task(context, surface, list(properties.loops_of(surface)), [points for points, _ in closed], longest=0)]
 
     def finish(self, context, results):
         super().finish(context, results)
