@@ -173,6 +173,20 @@ def test_levels_that_are_given(world, place):
     assert [loop["length"] for loop in report["topology"]["loops"]] == pytest.approx([loop.length for loop in values.loops], rel=1e-4)
 
 
+def test_a_level_without_room_is_told(world, capfd):
+    obj = plate(world, 2, **PLACES[2])
+    values = find(obj)
+    # Level 1 of a base of a few quads has too few for a tube.
+    values.loops[0].level = 1
+    collection, _, _ = world.remesh(obj, vertices=3000, base="MIN")
+    opened = report_of(collection)["topology"]["loops"][0]["level"]
+    told = capfd.readouterr().out
+    assert opened > 1 and f"loop 1 opens on level {opened}: there was no room for it on level 1" in told and "loop 2" not in told
+    values.loops[0].level = opened
+    collection, _, _ = world.remesh(obj, vertices=3000, base="MIN")
+    assert report_of(collection)["topology"]["loops"][0]["level"] == opened and "no room" not in capfd.readouterr().out
+
+
 def test_faces_tell_what_opened_there(world):
     obj = plate(world, 2, location=(3, 0, 1))
     find(obj)

@@ -27,7 +27,7 @@ class HybridMeshLoop(bpy.types.PropertyGroup):
     length: FloatProperty(name="Length", description="As a fraction of the bounding-box diagonal")
     points: StringProperty(name="Points", description="In the space of the object, as JSON")
     level: IntProperty(
-        name="Level", description="The first level that may have it open; -1 for the first one with room for it, 0 for the base", default=-1, min=-1,
+        name="Level", description="It opens on this level, or, where that has no room for it, on the next one that has; -1 for the first one with room for it, 0 for the base", default=-1, min=-1,
         max=limits().most_levels, update=_changed,
     )  # fmt: skip
     use: BoolProperty(name="Late", description="It is closed on the base and opens on a finer level; else it is open in the base", default=True, update=_changed)
@@ -95,6 +95,16 @@ def _set(values, name, value):
     # What changes nothing is not to be drawn anew.
     if getattr(values, name) != value:
         setattr(values, name, value)
+
+
+def say_later(operator, surface, source, plan):
+    """Says which loops of a mesh object a remesh has opened on later levels than they were given. source: what it has read of it; plan: the text of what it has decided."""
+    asked = [(number, loop) for number, loop in enumerate(loops_of(surface), 1) if loop.use and loop.level > 0]
+    opened = plans.opening_levels(plan) if asked else {}
+    for (number, loop), points in zip(asked, world_lines([loop for _, loop in asked], source), strict=True):
+        level = opened.get(plans.line_key(points), loop.level)
+        if level > loop.level:
+            operator.report({"WARNING"}, f"{surface.name}: loop {number} opens on level {level}: there was no room for it on level {loop.level}, which it was given")
 
 
 def say_unused(operator, surface):
