@@ -68,7 +68,7 @@ def remove(built):
 
 
 def add_figures(mesh, arrays):
-    """What a level says of its faces as attributes: stretch (also as the active colours), anisotropy, patch, irregular faces, addresses."""
+    """What a level says of its faces as attributes: stretch (also as the active colours), anisotropy, patch, irregular faces, what opened there, addresses."""
     stretch = arrays.get("stretch")
     if stretch is not None:
         meshes.set_attribute(mesh, meshes.STRETCH, "FLOAT", "FACE", stretch)
@@ -77,7 +77,7 @@ def add_figures(mesh, arrays):
         mesh.color_attributes.active_color_index = mesh.color_attributes.find(meshes.STRETCH_COLOR)
     for key, name, kind in (
         ("anisotropy", meshes.ANISOTROPY, "FLOAT"), ("patch", meshes.PATCH, "INT"), ("irregular", meshes.IRREGULAR, "BOOLEAN"),
-        ("root", meshes.ROOT, "INT"), ("path", meshes.PATH, "INT"),
+        ("opened", meshes.OPENED, "INT"), ("opened_level", meshes.OPENED_LEVEL, "INT"), ("root", meshes.ROOT, "INT"), ("path", meshes.PATH, "INT"),
     ):  # fmt: skip
         if arrays.get(key) is not None:
             meshes.set_attribute(mesh, name, kind, "FACE", arrays[key])

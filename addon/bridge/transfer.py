@@ -14,7 +14,7 @@ _WHOLE = {"INT", "BOOLEAN"}
 # What Blender and a level have of their own.
 _OWN = {
     "position", "material_index", "sharp_face", "sharp_edge", "custom_normal", meshes.STRETCH, meshes.STRETCH_COLOR, meshes.ANISOTROPY, meshes.PATCH,
-    meshes.IRREGULAR, meshes.PATCH_UV, meshes.ROOT, meshes.PATH,
+    meshes.IRREGULAR, meshes.PATCH_UV, meshes.ROOT, meshes.PATH, meshes.OPENED, meshes.OPENED_LEVEL,
 }  # fmt: skip
 
 

@@ -154,6 +154,16 @@ def topology_plan(cuts):
     return to_text({"format": FORMAT, "version": VERSION, "topology": events})
 
 
+def line_key(points):
+    """Stands for a loop's points, in whatever order they are."""
+    return frozenset(tuple(float(value) for value in point) for point in points)
+
+
+def opening_levels(text):
+    """The level that each event of a remesh's plan opened on: {line_key() of its first loop: level}."""
+    return {line_key(event["loops"][0]): event["level"] for event in parse(text).get("topology", ())}
+
+
 def parse(text):
     """A plan's text as a dict; raises PlanError where it is no plan that this version can read."""
     try:

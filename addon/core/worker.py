@@ -111,19 +111,12 @@ def info(job):
     return answer
 
 
-def find_loops(job):
-    """Loops of a mesh. job: loops, strokes and search as loop_search.search() takes them."""
-    from . import loop_search  # Most children need no numpy.
-
-    return {"loops": loop_search.search(_load_arrays(job["arrays"]), job["loops"], job["strokes"], job["search"])}
-
-
 def write_text(path, text):
     with open(path, "w", encoding="utf-8", errors="surrogateescape", newline="\n") as file:
         file.write(text)
 
 
-JOBS = {"remesh": remesh, "compare": compare, "info": info, "find_loops": find_loops}
+JOBS = {"remesh": remesh, "compare": compare, "info": info}
 
 
 def refuse_unreadable(path):

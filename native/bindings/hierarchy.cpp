@@ -4,6 +4,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -163,28 +164,32 @@ struct OperationRecord {
   std::string kind;
   int level = 0;
   std::vector<std::string> quads;
+  std::set<int> opens;
   std::optional<OperationTemplate> pattern;
   std::string start;  // the address of its start's quad
 };
 
-OperationRecord record_of(const HybridMesh& mesh, const std::vector<int>& plan_root, int operation) {
+OperationRecord record_of(const HybridMesh& mesh, const RootNotes& notes, int operation) {
   if (operation < 0 || operation >= mesh.operation_count())
     throw Error(ErrorCode::InvalidInput,
                 "there is no operation " + std::to_string(operation) + ": the hierarchy has " + std::to_string(mesh.operation_count()));
-  const std::vector<int> number = root_numbers(mesh, plan_root);
+  const std::vector<int> number = root_numbers(mesh, notes.plan_root);
   const Repatch& repatch = mesh.operation(operation).repatch;
-  OperationRecord record{repatch.kind, repatch.level, {}, template_of(mesh, operation), {}};
+  OperationRecord record{repatch.kind, repatch.level, {}, {}, template_of(mesh, operation), {}};
   for (const int node : repatch.removed) record.quads.push_back(address_of(mesh, number, node));
+  for (const int root : mesh.operation(operation).roots)
+    if (const int event = notes.opened_at(root); event >= 0) record.opens.insert(event);
   if (record.pattern) record.start = address_of(mesh, number, record.pattern->start.node);
   return record;
 }
 
 py::dict operation(const PythonHierarchy& hierarchy, int number) {
-  const OperationRecord record = locked(hierarchy, [&](const HybridMesh& mesh) { return record_of(mesh, hierarchy.plan_root(), number); });
+  const OperationRecord record = locked(hierarchy, [&](const HybridMesh& mesh) { return record_of(mesh, hierarchy.notes(), number); });
   py::dict result;
   result["kind"] = record.kind;
   result["level"] = record.level;
   result["quads"] = record.quads;
+  result["opens"] = std::vector<int>(record.opens.begin(), record.opens.end());
   result["corners"] = record.pattern ? record.pattern->corners : 0;
   result["start"] = record.pattern ? py::object(py::make_tuple(record.start, record.pattern->start.side)) : py::none();
   py::list new_quads;
@@ -218,8 +223,8 @@ void bind_hierarchy(py::module_& module) {
           [](const PythonHierarchy& hierarchy) { return locked(hierarchy, [](const HybridMesh& mesh) { return mesh.operation_count(); }); },
           "How many irregular operations there are.")
       .def("operation", &operation, arg("number"),
-           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, and its new_quads, numbered as a template in a "
-           "plan: nodes 0 .. corners - 1 are the "
+           "An irregular operation: its kind, its level, the addresses of the quads that it replaces, which events of the plan's topology it opens, "
+           "and its new_quads, numbered as a template in a plan: nodes 0 .. corners - 1 are the "
            "region's corners from the side start, (address, side), on. Where it does not replace a disk by a disk, corners is 0, start None and "
            "new_quads empty.")
       .def("save", &save, arg("path"), arg("metadata") = py::none(), "Writes the hierarchy; the file appears when it is complete.")

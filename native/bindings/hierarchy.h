@@ -16,15 +16,14 @@ namespace hybrid_mesh {
 // What Python holds of a hierarchy. Copies share it.
 class PythonHierarchy {
  public:
-  // `plan_root`: see RemeshResult; empty where there is no plan.
-  PythonHierarchy(std::shared_ptr<const HybridMesh> mesh, std::string metadata, std::vector<int> plan_root = {})
+  PythonHierarchy(std::shared_ptr<const HybridMesh> mesh, std::string metadata, RootNotes notes = {})
       : shared_(std::make_shared<Shared>()), metadata_(std::move(metadata)) {
     shared_->mesh = std::move(mesh);
-    shared_->plan_root = std::move(plan_root);
+    shared_->notes = std::move(notes);
   }
 
-  const std::vector<int>& plan_root() const { return shared_->plan_root; }  // to be read inside locked() alone
-  const std::string& metadata() const { return metadata_; }                 // JSON text kept in the file
+  const RootNotes& notes() const { return shared_->notes; }  // to be read inside locked() alone
+  const std::string& metadata() const { return metadata_; }  // JSON text kept in the file
 
   // Calls function(const HybridMesh&), one caller at a time: sampling remembers where it was, and Python's other threads may go on.
   template <typename Function>
@@ -39,27 +38,28 @@ class PythonHierarchy {
   void replace(Function&& function) {
     const std::lock_guard lock(shared_->mutex);
     auto mesh = std::make_shared<const HybridMesh>(function(*shared_->mesh));
-    std::vector<int> plan_root = shared_->plan_root;
+    std::vector<int> plan_root = shared_->notes.plan_root;
     if (!plan_root.empty()) {
       int next = *std::max_element(plan_root.begin(), plan_root.end()) + 1;
       for (int node = static_cast<int>(plan_root.size()); node < mesh->node_count(); ++node) plan_root.push_back(mesh->is_root(node) ? next++ : -1);
     }
     shared_->mesh = std::move(mesh);
-    shared_->plan_root = std::move(plan_root);
+    shared_->notes.plan_root = std::move(plan_root);
     shared_->sources.reset();
   }
 
-  // The hierarchy as it is now, and its plan_root.
-  std::pair<std::shared_ptr<const HybridMesh>, std::vector<int>> snapshot() const {
+  // The hierarchy as it is now.
+  std::pair<std::shared_ptr<const HybridMesh>, RootNotes> snapshot() const {
     const std::lock_guard lock(shared_->mutex);
-    return {shared_->mesh, shared_->plan_root};
+    return {shared_->mesh, shared_->notes};
   }
-  // Puts another hierarchy in the place of `before`, a snapshot; returns false, and does nothing, if it has been replaced meanwhile.
+  // Puts another hierarchy, which has the same nodes and more, in the place of `before`, a snapshot; returns false, and does nothing, if it has been
+  // replaced meanwhile.
   bool replace(const std::shared_ptr<const HybridMesh>& before, std::shared_ptr<const HybridMesh> mesh, std::vector<int> plan_root) {
     const std::lock_guard lock(shared_->mutex);
     if (shared_->mesh != before) return false;
     shared_->mesh = std::move(mesh);
-    shared_->plan_root = std::move(plan_root);
+    shared_->notes.plan_root = std::move(plan_root);
     shared_->sources.reset();
     return true;
   }
@@ -70,14 +70,14 @@ class PythonHierarchy {
   AnnotatedMesh annotated(Make&& make) const {
     const std::lock_guard lock(shared_->mutex);
     if (!shared_->sources) shared_->sources.emplace(*shared_->mesh);
-    return annotate(*shared_->mesh, *shared_->sources, shared_->plan_root, make(*shared_->mesh));
+    return annotate(*shared_->mesh, *shared_->sources, shared_->notes, make(*shared_->mesh));
   }
 
  private:
   struct Shared {
     std::mutex mutex;
     std::shared_ptr<const HybridMesh> mesh;
-    std::vector<int> plan_root;
+    RootNotes notes;
     std::optional<VertexSources> sources;  // made when first needed
   };
   std::shared_ptr<Shared> shared_;

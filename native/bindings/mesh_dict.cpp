@@ -48,7 +48,8 @@ class NodeSquare {
 
   // Corner, midpoint, and the ends and midpoints of the sides of finer leaves across.
   void add_side(int side) {
-    const Vec2 begin = kCorners[side], step = kCorners[(side + 1) % 4] - begin;
+    const Vec2& begin = kCorners[side];
+    const Vec2 step = kCorners[(side + 1) % 4] - begin;
     places_.emplace_back(hierarchy_.corner(node_, side), begin);
     places_.emplace_back(VertexId(VertexId::Kind::Edge, hierarchy_.half_edge(node_, side) >> 1), begin + 0.5 * step);
     double t = 0;
@@ -137,14 +138,20 @@ std::vector<int> root_numbers(const HybridMesh& hierarchy, const std::vector<int
   return number;
 }
 
-AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, const std::vector<int>& plan_root, QuadMesh mesh) {
+AnnotatedMesh annotate(const HybridMesh& hierarchy, const VertexSources& vertex_sources, const RootNotes& notes, QuadMesh mesh) {
   AnnotatedMesh annotated;
   annotated.mesh = std::move(mesh);
   const LevelStretch stretch = level_stretch(hierarchy, annotated.mesh);
   annotated.stretch.assign(stretch.stretch.begin(), stretch.stretch.end());
   annotated.anisotropy.assign(stretch.anisotropy.begin(), stretch.anisotropy.end());
-  for (const std::int32_t root : annotated.mesh.root) annotated.irregular.push_back(hierarchy.inserted_by(root) >= 0);
-  add_addresses(hierarchy, plan_root, annotated);
+  for (const std::int32_t root : annotated.mesh.root) {
+    annotated.irregular.push_back(hierarchy.inserted_by(root) >= 0);
+    if (notes.opened.empty()) continue;
+    const int event = notes.opened_at(root);
+    annotated.opened.push_back(event + 1);
+    annotated.opened_level.push_back(event < 0 ? 0 : hierarchy.level(root));
+  }
+  add_addresses(hierarchy, notes.plan_root, annotated);
   add_uv(hierarchy, annotated);
   add_sources(hierarchy, vertex_sources, annotated);
   return annotated;
@@ -164,6 +171,10 @@ py::dict to_dict(const AnnotatedMesh& annotated) {
   result["root"] = to_array(annotated.root);
   result["path"] = to_array(annotated.path);
   result["irregular"] = irregular;
+  if (!annotated.opened.empty()) {
+    result["opened"] = to_array(annotated.opened);
+    result["opened_level"] = to_array(annotated.opened_level);
+  }
   result["uv"] = rows_to_array<float>(annotated.uv);
   result["source_face"] = to_array(annotated.source_face);
   result["source_weights"] = rows_to_array<float>(annotated.source_weights);

@@ -18,8 +18,8 @@ namespace hybrid_mesh {
 namespace {
 
 RegionUpdate repatch(PythonHierarchy hierarchy, const Plan::Region& region, Context& context) {
-  const auto [mesh, plan_root] = hierarchy.snapshot();
-  RegionUpdate update = repatch_hierarchy(*mesh, root_numbers(*mesh, plan_root), region, Progress(context));
+  const auto [mesh, notes] = hierarchy.snapshot();
+  RegionUpdate update = repatch_hierarchy(*mesh, root_numbers(*mesh, notes.plan_root), region, Progress(context));
   if (!hierarchy.replace(mesh, std::make_shared<const HybridMesh>(std::move(update.hierarchy)), std::move(update.root_numbers)))
     throw Error(ErrorCode::InvalidInput, "the hierarchy was changed while a region of it was laid out anew: nothing was done");
   return update;
@@ -63,8 +63,8 @@ void bind_region_update(py::module_& module) {
   type.def(
           "copy",
           [](const PythonHierarchy& hierarchy) {
-            auto [mesh, plan_root] = hierarchy.snapshot();
-            return PythonHierarchy(std::move(mesh), hierarchy.metadata(), std::move(plan_root));
+            auto [mesh, notes] = hierarchy.snapshot();
+            return PythonHierarchy(std::move(mesh), hierarchy.metadata(), std::move(notes));
           },
           "A hierarchy of its own, which starts as this one is. Maps are shared.")
       .def(

@@ -17,7 +17,7 @@ struct PythonResult {
   PythonHierarchy hierarchy;  // that of the result
 
   explicit PythonResult(std::shared_ptr<const RemeshResult> from)
-      : result(std::move(from)), hierarchy(std::shared_ptr<const HybridMesh>(result, &result->hierarchy), "", result->plan_root) {}
+      : result(std::move(from)), hierarchy(std::shared_ptr<const HybridMesh>(result, &result->hierarchy), "", {result->plan_root, result->opened}) {}
 };
 
 // Throws Error{InvalidInput} that names the key that is unknown, of the wrong type or out of range.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loops that make a surface's genus, and surfaces with their topology closed.
-#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bindings/bindings.h"
 #include "bindings/conversions.h"
@@ -10,6 +11,7 @@
 #include "surface/repair.h"
 #include "surface/topology_summary.h"
 #include "topology/component_tubes.h"
+#include "topology/loop_search.h"
 #include "topology/topological_noise.h"
 
 namespace py = pybind11;
@@ -22,83 +24,96 @@ TriangleSurface repaired(const PolygonSoup& soup, const Progress& progress) {
   return repair(soup, RepairOptions(), report, progress);
 }
 
-std::vector<int> points_from(const py::handle& object) {
-  const auto array = py::array_t<std::int64_t, py::array::forcecast>::ensure(object);
-  if (!array || array.ndim() != 1) {
-    PyErr_Clear();
-    throw Error(ErrorCode::InvalidInput, "a given loop must be the numbers of its points");
-  }
-  std::vector<int> points;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-    // What fits no int is no point either.
-    const std::int64_t v = array.at(i);
-    points.push_back(v < 0 || v > std::numeric_limits<int>::max() ? -1 : static_cast<int>(v));
-  }
-  return points;
-}
-
-std::vector<Vec3> stroke_from(const py::object& object) {
+// (n, 3) finite coordinates.
+std::vector<Vec3> line_from(const py::handle& object, const std::string& what) {
   const auto array = py::array_t<double, py::array::forcecast>::ensure(object);
-  if (!array || array.ndim() != 2 || array.shape(1) != 3) {
+  if (!array || array.ndim() != 2 || array.shape(1) != 3 || array.shape(0) < 2) {
     PyErr_Clear();
-    throw Error(ErrorCode::InvalidInput, "a stroke must be (n, 3) coordinates");
+    throw Error(ErrorCode::InvalidInput, what + " must be (n, 3) coordinates of two points at least");
   }
-  std::vector<Vec3> stroke;
-  for (py::ssize_t i = 0; i < array.shape(0); ++i) stroke.emplace_back(array.at(i, 0), array.at(i, 1), array.at(i, 2));
-  return stroke;
+  std::vector<Vec3> line;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) line.emplace_back(array.at(i, 0), array.at(i, 1), array.at(i, 2));
+  return line;
 }
 
-py::dict to_dict(const TriangleSurface& surface, const SurfaceLoop& loop) {
-  std::vector<Vec3> positions;
-  for (const int v : loop.points) positions.push_back(surface.points[v]);
-  py::dict dict;
-  dict["points"] = to_array(loop.points);
-  dict["positions"] = rows_to_array<double>(positions);
-  dict["length"] = loop.length;
-  dict["kind"] = loop.kind == LoopKind::Handle ? "handle" : "tunnel";
-  return dict;
+EarlierLoop loop_from(const py::handle& object, const std::string& what) {
+  if (!py::isinstance<py::dict>(object)) throw Error(ErrorCode::InvalidInput, what + " must be a dict with points and drawn");
+  const auto dict = py::reinterpret_borrow<py::dict>(object);
+  for (const char* key : {"points", "drawn"})
+    if (!dict.contains(key)) throw Error(ErrorCode::InvalidInput, what + " has no " + key);
+  return {line_from(dict["points"], what), py::bool_(dict["drawn"])};
 }
 
-double positive(double value, const char* name) {
-  if (!(value > 0)) throw Error(ErrorCode::InvalidInput, std::string(name) + " must be above 0");
-  return value;
+std::string name_of(const char* what, std::size_t number) { return std::string(what) + " " + std::to_string(number + 1); }
+
+struct LoopWork {
+  PolygonSoup soup;
+  LoopRequest request;
+};
+
+struct FoundLoops {
+  std::vector<RequestedLoop> loops;
+  std::vector<std::vector<Vec3>> positions;
+};
+
+LoopWork loop_work_from(const py::object& points, const py::object& offsets, const py::object& indices, const py::iterable& loops,
+                        const py::iterable& strokes, double detour, std::optional<double> longest) {
+  LoopWork work{soup_from_arrays(points, offsets, indices), {}};
+  LoopRequest& request = work.request;
+  for (const py::handle loop : loops) request.loops.push_back(loop_from(loop, name_of("loop", request.loops.size())));
+  for (const py::handle stroke : strokes) request.strokes.push_back(line_from(stroke, name_of("stroke", request.strokes.size())));
+  if (!(detour > 0)) throw Error(ErrorCode::InvalidInput, "detour must be above 0");
+  request.options.detour = detour;
+  if (longest && !(*longest >= 0)) throw Error(ErrorCode::InvalidInput, "longest must not be negative");
+  if (longest) request.options.longest = *longest;
+  return work;
 }
 
-py::list find_loops_of(const py::object& points, const py::object& offsets, const py::object& indices, const py::iterable& given, double detour,
-                       std::optional<double> longest) {
-  const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
-  std::vector<std::vector<int>> kept;
-  for (const py::handle loop : given) kept.push_back(points_from(loop));
-  LoopOptions options;
-  options.detour = positive(detour, "detour");
-  if (longest) options.longest = positive(*longest, "longest");
-  std::vector<SurfaceLoop> found;
-  const TriangleSurface surface = run_interruptibly([&](Context& context) {
-    const Progress progress(context);
-    TriangleSurface clean = repaired(soup, progress.part(0, 0.1));
-    found = find_loops(clean, kept, options, progress.part(0.1, 1));
-    return clean;
-  });
-  py::list loops;
-  for (const SurfaceLoop& loop : found) loops.append(to_dict(surface, loop));
-  return loops;
+FoundLoops find(const LoopWork& work, Context& context) {
+  const Progress progress(context);
+  progress.stage("repair");
+  const TriangleSurface surface = repaired(work.soup, progress.part(0, 0.1));
+  FoundLoops found{search_loops(surface, work.request, progress.part(0.1, 1)), {}};
+  for (const RequestedLoop& requested : found.loops) {
+    std::vector<Vec3>& line = found.positions.emplace_back();
+    for (const int v : requested.loop.points) line.push_back(surface.points[v]);
+  }
+  return found;
 }
 
-py::array_t<int> snap_loop_to(const py::object& points, const py::object& offsets, const py::object& indices, const py::object& stroke_object,
-                              bool tighten) {
-  const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
-  const std::vector<Vec3> stroke = stroke_from(stroke_object);
-  const auto loop = run_interruptibly([&](Context& context) {
-    const Progress progress(context);
-    return snap_loop(repaired(soup, progress.part(0, 0.1)), stroke, tighten ? SnapTightening::Shortest : SnapTightening::None, progress.part(0.1, 1));
-  });
-  if (!loop) throw Error(ErrorCode::Unsupported, loop.reason);
-  return to_array(*loop);
+py::list to_list(const FoundLoops& found) {
+  py::list list;
+  for (std::size_t i = 0; i < found.loops.size(); ++i) {
+    const auto& [loop, drawn, source] = found.loops[i];
+    py::dict dict;
+    dict["points"] = to_array(loop.points);
+    dict["positions"] = rows_to_array<double>(found.positions[i]);
+    dict["length"] = loop.length;
+    dict["kind"] = loop.kind == LoopKind::Handle ? "handle" : "tunnel";
+    dict["drawn"] = drawn;
+    dict["source"] = source;
+    list.append(dict);
+  }
+  return list;
+}
+
+py::list find_loops_of(const py::object& points, const py::object& offsets, const py::object& indices, const py::iterable& loops,
+                       const py::iterable& strokes, double detour, std::optional<double> longest) {
+  const LoopWork work = loop_work_from(points, offsets, indices, loops, strokes, detour, longest);
+  return to_list(run_interruptibly([&](Context& context) { return find(work, context); }));
+}
+
+std::shared_ptr<PythonJob> start_find_loops(const py::object& points, const py::object& offsets, const py::object& indices, const py::iterable& loops,
+                                            const py::iterable& strokes, double detour, std::optional<double> longest) {
+  auto found = std::make_shared<FoundLoops>();  // written by the job's thread until it is done
+  return start_job(
+      [work = loop_work_from(points, offsets, indices, loops, strokes, detour, longest), found](Context& context) { *found = find(work, context); },
+      [found]() -> py::object { return to_list(*found); });
 }
 
 py::tuple close_noise_of(const py::object& points, const py::object& offsets, const py::object& indices, double length) {
   const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
-  positive(length, "length");
+  if (!(length > 0)) throw Error(ErrorCode::InvalidInput, "length must be above 0");
   int handles = 0;
   const PolygonSoup closed = run_interruptibly([&](Context& context) {
     const Progress progress(context);
@@ -132,18 +147,20 @@ py::tuple close_topology_of(const py::object& points, const py::object& offsets,
 
 void bind_topology(py::module_& module) {
   using py::arg;
-  module.def(
-      "find_loops", &find_loops_of, arg("points"), arg("face_offsets"), arg("face_indices"), arg("given") = py::tuple(),
-      arg("detour") = LoopOptions().detour, arg("longest") = py::none(),
+  const auto define = [&](const char* name, auto function, const char* help) {
+    module.def(name, function, arg("points"), arg("face_offsets"), arg("face_indices"), arg("loops") = py::tuple(), arg("strokes") = py::tuple(),
+               arg("detour") = LoopOptions().detour, arg("longest") = py::none(), help);
+  };
+  define(
+      "find_loops", &find_loops_of,
       "Short disjoint loops that separate nothing together, one for each unit of genus, as a list of dicts: points (n,) int32, numbers of points of\n"
-      "what repair() makes of the mesh; positions (n, 3); length, in the mesh's unit; kind, 'handle' or 'tunnel'. The loops of `given`, each the\n"
-      "numbers of its points, come first and are kept as they are. detour: how many times longer than the shortest a loop may be if its cap meets\n"
-      "the surface less. longest: longer loops are left out. InvalidInput names a given loop that cannot be kept; Unsupported: the triangles\n"
-      "leave no room for as many loops.");
-  module.def("snap_loop", &snap_loop_to, arg("points"), arg("face_offsets"), arg("face_indices"), arg("stroke"), arg("tighten") = true,
-             "A closed stroke, (n, 3), as a simple cycle along edges near it: (n,) int32, numbers of points of what repair() makes of the mesh. "
-             "tighten: it\n"
-             "is replaced by shorter loops around the same handles. Unsupported: the stroke leaves the surface.");
+      "what repair() makes of the mesh; positions (n, 3); length, in the mesh's unit; kind, 'handle' or 'tunnel'; drawn; source.\n"
+      "loops: dicts with points (n, 3) and drawn, those that the mesh has already; source is the place among them, -1 for others. strokes: closed\n"
+      "lines (n, 3), each of which becomes the shortest loop around what it goes around, and is drawn then. What is drawn comes first, then those\n"
+      "of `loops` that can be kept beside it, then what is missing. detour: how many times longer than the shortest a loop may be if its cap meets\n"
+      "the surface less. longest: longer ones are not looked for; 0: none is. InvalidInput and Unsupported name what is drawn and cannot be kept;\n"
+      "Unsupported: the triangles leave no room for as many loops.");
+  define("start_find_loops", &start_find_loops, "Starts find_loops() as a Job, whose result is what find_loops() returns.");
   module.def("close_noise", &close_noise_of, arg("points"), arg("face_offsets"), arg("face_indices"), arg("length"),
              "Cuts and caps all handles and tunnels whose loops are shorter than `length`: (points, face_offsets, face_indices, how many).");
   module.def(

@@ -92,6 +92,7 @@ void Construction::begin_level() {
   std::iota(patches_.begin(), patches_.end(), 0);
   group_ = patches_;
   towers_.assign(graph.patch_count(), 1);
+  opens_.assign(graph.patch_count(), -1);
   vertices_.assign(graph.node_count, {});
   fresh_ = 0;
   for (int q = 0; q < graph.patch_count(); ++q)
@@ -117,12 +118,12 @@ void Construction::set_map(int patch, PatchMap map) {
 
 void Construction::apply(MappedEdit mapped) {
   if (closed_) throw Error(ErrorCode::Internal, "an edit of a level whose operations have been made");
-  change(mapped.edit);
+  change(mapped.edit, mapped.opens.empty() ? -1 : mapped.opens.front());
   for (auto& [patch, map] : mapped.maps) set_map(patch, std::move(map));
   for (const int e : mapped.opens) surface_.open[e] = true;
 }
 
-void Construction::change(const LayoutEdit& edit) {
+void Construction::change(const LayoutEdit& edit, int opens) {
   const std::vector<int> before = patches_;
   const int first_new = static_cast<int>(group_.size());
   int group = -1;
@@ -153,6 +154,7 @@ void Construction::change(const LayoutEdit& edit) {
     patches_[change.added[k]] = first_new + static_cast<int>(k);
     group_.push_back(group);
     towers_.push_back(1);
+    opens_.push_back(opens);
   }
   std::vector<Vertex> vertices(quads_.graph().node_count);
   for (std::size_t n = 0; n < change.node.size(); ++n)
@@ -184,8 +186,10 @@ void Construction::close() {
   for (int q = 0; q < old_count; ++q)
     if (!left[q]) groups[find(q)].removed.push_back(old[q]);
   for (const auto& [name, group] : groups) insert(group, towers_[name], nodes);
-  for (std::size_t q = 0; q < nodes.size(); ++q)
+  for (std::size_t q = 0; q < nodes.size(); ++q) {
     if (patches_[q] >= old_count) root_number_.push_back({nodes[q], quads_.address(static_cast<int>(q)).root});
+    if (const int event = opens_[patches_[q]]; event >= 0) opened_.push_back({nodes[q], event});
+  }
   nodes_ = std::move(nodes);
   for (std::size_t q = 0; q < nodes_.size(); ++q)
     if (own_[q]) mesh_.set_map(nodes_[q], maps_[q].map);
@@ -229,6 +233,12 @@ std::vector<int> Construction::root_numbers() const {
   std::vector<int> number(mesh_.node_count(), -1);
   for (const auto& [node, root] : root_number_) number[node] = root;
   return number;
+}
+
+std::vector<int> Construction::opened() const {
+  std::vector<int> event(mesh_.node_count(), -1);
+  for (const auto& [node, opens] : opened_) event[node] = opens;
+  return event;
 }
 
 }  // namespace hybrid_mesh

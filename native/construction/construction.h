@@ -39,6 +39,8 @@ class Construction {
   // Once closed:
   HybridMesh& hierarchy() { return mesh_; }
   std::vector<int> root_numbers() const;  // per node: the number of a root quad in addresses, -1: no root
+  // Per node: of a root quad, the event of the surface's topology that opened with the edit that made it; -1: none.
+  std::vector<int> opened() const;
 
  private:
   struct Group {
@@ -51,7 +53,7 @@ class Construction {
   };
 
   void begin_level();
-  void change(const LayoutEdit& edit);
+  void change(const LayoutEdit& edit, int opens);
   void insert(const Group& group, bool towers, std::vector<int>& nodes);
   int find(int a);
 
@@ -63,6 +65,7 @@ class Construction {
   Placement placement_;
   SurfaceVersion surface_;
   std::vector<std::pair<int, int>> root_number_;  // node, number
+  std::vector<std::pair<int, int>> opened_;       // node, event
   bool closed_ = false;
   // Of the level:
   std::vector<int> nodes_;  // per patch of it as it began; once closed, as it is
@@ -71,6 +74,7 @@ class Construction {
   std::vector<int> patches_;      // per patch: its number among all that there ever were on this level
   std::vector<int> group_;        // per number: union-find of what belongs to one operation
   std::vector<char> towers_;      // per number: its group grows skin and does nothing else
+  std::vector<int> opens_;        // per number: the event that opened with the edit that made it, or -1
   std::vector<Vertex> vertices_;  // per node of the quads
   int fresh_ = 0;
 };

@@ -109,10 +109,11 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
 // Back to the coarsest hierarchy with its operations: an adaptive mesh is refined where that brings it nearer to the surface, and nowhere else.
 void coarsen(Candidate& c) {
   Coarsened made = coarsened(c.hierarchy);
-  std::vector<int> plan_root(made.mesh.node_count(), -1);
-  for (std::size_t n = 0; n < made.node.size(); ++n)
-    if (made.node[n] >= 0) plan_root[made.node[n]] = c.plan_root[n];
-  c.plan_root = std::move(plan_root);
+  for (std::vector<int>* of_node : {&c.plan_root, &c.opened}) {
+    const std::vector<int> before = std::exchange(*of_node, std::vector<int>(made.mesh.node_count(), -1));
+    for (std::size_t n = 0; n < made.node.size(); ++n)
+      if (made.node[n] >= 0) (*of_node)[made.node[n]] = before[n];
+  }
   std::vector<VertexId> irregular;
   for (const auto& [before, after] : made.vertex)
     if (std::binary_search(c.finest_irregular.begin(), c.finest_irregular.end(), before)) irregular.push_back(after);
@@ -262,6 +263,7 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
     for (const PatchSide& s : n) c.finest_boundary_sides += s.patch < 0;
   c.finest_irregular = irregular_names(hierarchy.level_mesh(c.finest));
   c.plan_root = made.root_numbers();
+  c.opened = made.opened();
   Plan plan;
   plan.base = outline_of_base(hierarchy, base);
   plan.origin = origin;

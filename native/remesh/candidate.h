@@ -23,6 +23,7 @@ struct Candidate {
   HybridMesh hierarchy;        // with its maps; refined as far as it has been fitted
   std::string plan;            // JSON text
   std::vector<int> plan_root;  // see RemeshResult
+  std::vector<int> opened;     // see RemeshResult
   int base_quads = 0, base_vertices = 0;
   int levels = 0;  // above the base, of a uniform mesh
 

@@ -156,11 +156,11 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
   std::optional<Plan> plan;
   if (!options.plan.empty()) plan = plan_from_json(options.plan);
   Stopwatch watch;
-  Source source = read_source(input, options, progress.part(0, 0.05), watch);
+  Source source = read_source(input, options, progress.part(0, 0.04), watch);
   BaseSurface base;
   watch.start("topology");
-  std::vector<LateEvent> events =
-      plan ? late_events_of(*plan, source.repaired, progress) : find_late_events(source.repaired, source.topology, options, progress);
+  std::vector<LateEvent> events = plan ? late_events_of(*plan, source.repaired, progress.part(0.04, 0.05))
+                                       : find_late_events(source.repaired, source.topology, options, progress.part(0.04, 0.05));
   watch.stop();
   Candidate best = plan && plan->has_base() ? planned_remesh(options, source, *plan, std::move(events), base, progress, watch)
                                             : searched_remesh(options, source, std::move(events), base, progress, watch);
@@ -172,8 +172,8 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
   place(best, source.placement, base.series.get());
   report["seconds"] = watch.json();
   progress(1);
-  return {std::move(best.hierarchy), std::move(best.final_mesh), std::move(source.repaired),
-          std::move(best.plan),      std::move(best.plan_root),  std::move(report)};
+  return {std::move(best.hierarchy), std::move(best.final_mesh), std::move(source.repaired), std::move(best.plan),
+          std::move(best.plan_root), std::move(best.opened),     std::move(report)};
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ struct RemeshResult {
   TriangleSurface repaired;       // what the maps' source faces refer to
   std::string plan;               // JSON text: what was decided. With it, and the same other options, the same surface gives the same result
   std::vector<int> plan_root;     // per node: number of a root quad in the addresses of the plan, -1 for other nodes
+  std::vector<int> opened;        // per node: of a root quad, the event of the plan's topology that opened where it was put in; -1: none
   nlohmann::ordered_json report;  // `NAME.report.json` without file name, settings and memory
 };
 

@@ -42,11 +42,12 @@ Json describe_input(const PolygonSoup& input, const Source& source) {
           {"genus", source.topology.genus},           {"repaired", r}};
 }
 
-// What has opened, and on which level: 0 is the base.
+// What has opened, and on which level: 0 is the base. What opens above it has a number, its place in the plan's topology from 1 on.
 Json describe_topology(const RemeshTask& task, const Candidate& c) {
   Json out{{"loops", Json::array()}, {"tubes", Json::array()}, {"boundaries", Json::array()}};
-  const auto add = [&](const TopologyEvent& event, double diagonal, int level, const std::string& reason) {
+  const auto add = [&](const TopologyEvent& event, double diagonal, int level, const std::string& reason, std::size_t number) {
     Json entry{{"length", event.length / diagonal}};
+    if (number > 0) entry["number"] = number;
     if (event.kind == EventKind::Cut) entry["kind"] = event.loop_kind == LoopKind::Handle ? "handle" : "tunnel";
     entry["level"] = level;
     if (!reason.empty()) entry["reason"] = reason;
@@ -54,8 +55,8 @@ Json describe_topology(const RemeshTask& task, const Candidate& c) {
   };
   out["removed_handles"] = task.source.removed_handles;
   const double diagonal = task.source.placement.diagonal;
-  for (std::size_t e = 0; e < c.opened_on.size(); ++e) add(task.base.series->events[e], diagonal, c.opened_on[e], "");
-  for (const BaseSurface::Unopened& u : task.base.unopened) add(u.event, diagonal, 0, u.reason);
+  for (std::size_t e = 0; e < c.opened_on.size(); ++e) add(task.base.series->events[e], diagonal, c.opened_on[e], "", e + 1);
+  for (const BaseSurface::Unopened& u : task.base.unopened) add(u.event, diagonal, 0, u.reason, 0);
   return out;
 }
 

@@ -92,7 +92,7 @@ double closest_on_triangle(const Vec3& p, const Corners& t, std::array<double, 3
 // A hierarchy of boxes over the triangles, halved at the median along the longest side. Coordinates are centred and scaled.
 class SurfaceDistanceQuery::Tree {
  public:
-  Tree(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& faces) {
+  Tree(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& faces, const Progress* progress) {
     if (faces.empty()) throw Error(ErrorCode::InvalidInput, "a surface without faces has no closest points");
     if (faces.size() > static_cast<std::size_t>(std::numeric_limits<int>::max() / 2))
       throw Error(ErrorCode::Unsupported, "too many faces: " + std::to_string(faces.size()));
@@ -114,7 +114,7 @@ class SurfaceDistanceQuery::Tree {
     }
     std::iota(order_.begin(), order_.end(), 0);
     nodes_.reserve(2 * (count / leaf_size + 1));
-    build(0, count, boxes);
+    build(0, count, boxes, progress);
     slot_.resize(count);
     for (int i = 0; i < count; ++i) {
       corners_[i] = corners[order_[i]];
@@ -192,7 +192,9 @@ class SurfaceDistanceQuery::Tree {
 
   Vec3 local(const Vec3& p) const { return scaled(Vec3(p / 2 - centre_ / 2), exponent_ - 1); }
 
-  int build(int begin, int end, const std::vector<Box>& boxes) {
+  int build(int begin, int end, const std::vector<Box>& boxes, const Progress* progress) {
+    constexpr int few = 4096;  // faces, which take no time
+    if (progress && end - begin > few) progress->check();
     const int index = static_cast<int>(nodes_.size());
     nodes_.push_back({{}, begin, end});
     Box box, centres;
@@ -209,8 +211,8 @@ class SurfaceDistanceQuery::Tree {
       const double a = boxes[f].low[axis] + boxes[f].high[axis], b = boxes[g].low[axis] + boxes[g].high[axis];
       return a != b ? a < b : f < g;
     });
-    build(begin, middle, boxes);
-    nodes_[index].second = build(middle, end, boxes);
+    build(begin, middle, boxes, progress);
+    nodes_[index].second = build(middle, end, boxes, progress);
     return index;
   }
 
@@ -233,7 +235,9 @@ class SurfaceDistanceQuery::Tree {
 
 SurfaceDistanceQuery::SurfaceDistanceQuery(const TriangleSurface& surface) : SurfaceDistanceQuery(surface.points, surface.faces) {}
 SurfaceDistanceQuery::SurfaceDistanceQuery(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& faces)
-    : tree_(std::make_unique<const Tree>(points, faces)) {}
+    : tree_(std::make_unique<const Tree>(points, faces, nullptr)) {}
+SurfaceDistanceQuery::SurfaceDistanceQuery(const TriangleSurface& surface, const Progress& progress)
+    : tree_(std::make_unique<const Tree>(surface.points, surface.faces, &progress)) {}
 SurfaceDistanceQuery::~SurfaceDistanceQuery() = default;
 SurfaceDistanceQuery::SurfaceDistanceQuery(SurfaceDistanceQuery&&) noexcept = default;
 SurfaceDistanceQuery& SurfaceDistanceQuery::operator=(SurfaceDistanceQuery&&) noexcept = default;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/context.h"
 #include "surface/triangle_surface.h"
 
 namespace hybrid_mesh {
@@ -22,6 +23,7 @@ class SurfaceDistanceQuery {
  public:
   // Throws Error{InvalidInput} if there is no face.
   explicit SurfaceDistanceQuery(const TriangleSurface& surface);
+  SurfaceDistanceQuery(const TriangleSurface& surface, const Progress& progress);
   SurfaceDistanceQuery(const std::vector<Vec3>& points, const std::vector<std::array<int, 3>>& faces);
   ~SurfaceDistanceQuery();
   SurfaceDistanceQuery(SurfaceDistanceQuery&&) noexcept;

@@ -84,9 +84,11 @@ bool BitSpace::add(BitVector vector) {
   return false;
 }
 
-Cohomology::Cohomology(const TriangleSurface& closed) : chain_(closed.opposite.size(), -1) {
+Cohomology::Cohomology(const TriangleSurface& closed, const Progress& progress) : chain_(closed.opposite.size(), -1) {
   std::vector<char> crossed = edges_off_forest(closed);
+  progress(0.5);
   const std::vector<int> degree = prune_leaves(closed, crossed);
+  progress(0.8);
   trace_chains(closed, crossed, degree);
   std::vector<int> node(closed.faces.size(), -1);
   int nodes = 0;
@@ -97,6 +99,7 @@ Cohomology::Cohomology(const TriangleSurface& closed) : chain_(closed.opposite.s
     }
   number_cycles(nodes_, nodes);
   nodes_.clear();
+  progress(1);
 }
 
 // What is left of a component of genus g > 0 has 2 g independent cycles: there are faces at which three chains meet.

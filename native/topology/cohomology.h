@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/context.h"
 #include "surface/triangle_surface.h"
 
 namespace hybrid_mesh {
@@ -35,7 +36,7 @@ class BitSpace {
 class Cohomology {
  public:
   // `closed` has no boundary.
-  explicit Cohomology(const TriangleSurface& closed);
+  Cohomology(const TriangleSurface& closed, const Progress& progress);
 
   int dimension() const { return dimension_; }
   // The chain that crosses the edge of a half-edge, or -1.

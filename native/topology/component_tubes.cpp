@@ -26,7 +26,7 @@ bool operator<(const Pair& x, const Pair& y) { return std::tie(x.cost, x.a, x.b)
 
 class TubeFinder {
  public:
-  TubeFinder(const TriangleSurface& surface, const std::vector<TopologyEvent>& others);
+  TubeFinder(const TriangleSurface& surface, const std::vector<TopologyEvent>& others, const Progress& progress);
   std::vector<TopologyEvent> find(const Progress& progress);
 
  private:
@@ -58,9 +58,9 @@ class TubeFinder {
   std::vector<Tube> tubes_;
 };
 
-TubeFinder::TubeFinder(const TriangleSurface& surface, const std::vector<TopologyEvent>& others)
+TubeFinder::TubeFinder(const TriangleSurface& surface, const std::vector<TopologyEvent>& others, const Progress& progress)
     : surface_(surface),
-      hits_(surface),
+      hits_(surface, progress),
       out_(surface.points.size(), -1),
       normal_(surface.points.size(), Vec3::Zero()),
       taken_(surface.points.size(), 0) {
@@ -76,6 +76,7 @@ TubeFinder::TubeFinder(const TriangleSurface& surface, const std::vector<Topolog
   for (const TopologyEvent& event : others)
     for (const auto& loop : event.loops)
       for (const int v : loop) taken_[v] = 1;
+  progress.check();
   find_components();
   take_samples();
 }
@@ -271,7 +272,7 @@ std::vector<TopologyEvent> TubeFinder::find(const Progress& progress) {
 
 std::vector<TopologyEvent> find_tubes(const TriangleSurface& surface, const std::vector<TopologyEvent>& others, const Progress& progress) {
   progress.stage("joining components");
-  return TubeFinder(surface, others).find(progress);
+  return TubeFinder(surface, others, progress.part(0, 0)).find(progress);
 }
 
 }  // namespace hybrid_mesh

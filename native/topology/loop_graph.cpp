@@ -39,7 +39,8 @@ constexpr std::greater<std::pair<double, int>> later;
 
 }  // namespace
 
-LoopGraph::LoopGraph(const TriangleSurface& surface) : points_(surface.points), cohomology_(with_fans(surface)), taken_(cohomology_.dimension()) {
+LoopGraph::LoopGraph(const TriangleSurface& surface, const Progress& progress)
+    : points_(surface.points), cohomology_(with_fans(surface), progress.part(0.2, 0.6)), taken_(cohomology_.dimension()) {
   const int half_edges = 3 * static_cast<int>(surface.faces.size());
   first_.assign(points_.size() + 1, 0);
   boundary_.assign(points_.size(), 0);
@@ -52,9 +53,11 @@ LoopGraph::LoopGraph(const TriangleSurface& surface) : points_(surface.points), 
   arcs_.resize(half_edges);
   std::vector<int> fill(first_.begin(), first_.end() - 1);
   for (int h = 0; h < half_edges; ++h) arcs_[fill[surface.from(h)]++] = {surface.to(h), cohomology_.chain(h), 0};
+  progress(0.8);
   measure(EdgeMeasure::Length, 0);
   find_components();
   forget_taken();
+  progress(1);
 }
 
 void LoopGraph::measure(EdgeMeasure by, std::uint64_t seed) {
@@ -215,13 +218,14 @@ std::vector<int> LoopSearch::path(int from, int to, double bound, const Progress
   return points;
 }
 
-void LoopSearch::grow_tree(int root, const Progress& progress) {
+void LoopSearch::grow_tree(int root, ProgressSteps& steps) {
   reach(root, -1, 0, 0);
-  for (int steps = 1; !heap_.empty(); ++steps) {
-    if (steps % steps_between_checks == 0) progress.check();
+  for (int passes = 1; !heap_.empty(); ++passes) {
+    if (passes % steps_between_checks == 0) steps.progress().check();
     const double distance = heap_.front().first;
     const int v = settle_next();
     if (v < 0) continue;
+    if (settled_.size() % steps_between_checks == 0) steps();
     const Node& node = nodes_[v];
     for (const LoopGraph::Arc* arc = graph_.begin(v); arc != graph_.end(v); ++arc) {
       const Node& other = nodes_[arc->to];
@@ -250,10 +254,10 @@ std::vector<int> LoopSearch::loop_of(int a, int b) const {
   return loop;
 }
 
-std::vector<LoopSearch::Chord> LoopSearch::closing_edges(const Progress& progress) const {
+std::vector<LoopSearch::Chord> LoopSearch::closing_edges(ProgressSteps& steps) const {
   std::vector<Chord> chords;
   for (std::size_t i = 0; i < settled_.size(); ++i) {
-    if (i % steps_between_checks == 0) progress.check();
+    if ((i + 1) % steps_between_checks == 0) steps();
     const int v = settled_[i];
     const Node& node = nodes_[v];
     for (const LoopGraph::Arc* arc = graph_.begin(v); arc != graph_.end(v); ++arc) {
@@ -268,17 +272,20 @@ std::vector<LoopSearch::Chord> LoopSearch::closing_edges(const Progress& progres
   return chords;
 }
 
-std::vector<std::vector<int>> LoopSearch::basis(const std::vector<int>& roots, const Progress& progress) {
+// Points are settled, and then looked at.
+std::int64_t LoopSearch::basis_steps(const LoopGraph& graph) { return 2 * (graph.point_count() / steps_between_checks); }
+
+std::vector<std::vector<int>> LoopSearch::basis(const std::vector<int>& roots, ProgressSteps& steps) {
   ++run_;
   heap_.clear();
   settled_.clear();
   const auto grow = [&](int root) {
-    if (!graph_.wall(root) && !graph_.plain(root) && nodes_[root].stamp != 2 * run_) grow_tree(root, progress);
+    if (!graph_.wall(root) && !graph_.plain(root) && nodes_[root].stamp != 2 * run_) grow_tree(root, steps);
   };
   for (const int root : roots) grow(root);
   // Walls may have cut edges of a component apart.
   for (int v = 0; v < graph_.point_count(); ++v) grow(v);
-  std::vector<Chord> chords = closing_edges(progress);
+  std::vector<Chord> chords = closing_edges(steps);
   const auto order = [](const Chord& a) { return std::tuple(a.length, a.from, a.to); };
   // Loops of the same key stand for each other: the shortest of each.
   std::sort(chords.begin(), chords.end(), [&](const Chord& a, const Chord& b) { return std::tuple(a.key, order(a)) < std::tuple(b.key, order(b)); });
@@ -287,7 +294,7 @@ std::vector<std::vector<int>> LoopSearch::basis(const std::vector<int>& roots, c
   std::vector<std::vector<int>> loops;
   BitSpace space = graph_.taken();
   for (const Chord& chord : chords) {
-    progress.check();
+    steps.progress().check();
     std::vector<int> loop = loop_of(chord.from, chord.to);
     if (space.add(graph_.bits_of(loop))) loops.push_back(std::move(loop));
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/progress_steps.h"
 #include "topology/cohomology.h"
 
 namespace hybrid_mesh {
@@ -26,7 +27,7 @@ class LoopGraph {
     double length;
   };
 
-  explicit LoopGraph(const TriangleSurface& surface);
+  LoopGraph(const TriangleSurface& surface, const Progress& progress);
 
   void measure(EdgeMeasure by, std::uint64_t seed);
   int point_count() const { return static_cast<int>(first_.size()) - 1; }
@@ -77,7 +78,9 @@ class LoopSearch {
   // The shortest path off walls, both ends included, if it is shorter than `bound`. Else empty.
   std::vector<int> path(int from, int to, double bound, const Progress& progress);
   // A basis of such loops, each of which runs along the tree of shortest paths from a root but for one edge; `roots` has a point a component.
-  std::vector<std::vector<int>> basis(const std::vector<int>& roots, const Progress& progress);
+  // Takes at most basis_steps() steps.
+  std::vector<std::vector<int>> basis(const std::vector<int>& roots, ProgressSteps& steps);
+  static std::int64_t basis_steps(const LoopGraph& graph);
 
   double length_of(const std::vector<int>& loop) const;
   std::uint64_t key_of(const std::vector<int>& loop) const;
@@ -98,8 +101,8 @@ class LoopSearch {
 
   void reach(int point, int parent, double distance, std::uint64_t key);
   int settle_next();
-  void grow_tree(int root, const Progress& progress);
-  std::vector<Chord> closing_edges(const Progress& progress) const;
+  void grow_tree(int root, ProgressSteps& steps);
+  std::vector<Chord> closing_edges(ProgressSteps& steps) const;
   std::vector<int> loop_of(int a, int b) const;
   int common_stem(int a, int b) const;
 

@@ -148,6 +148,11 @@ std::array<Vec3, 5> points_of_disk(const TriangleSurface& surface, const std::ve
 }  // namespace
 
 void tell_kinds(const TriangleSurface& surface, std::vector<SurfaceLoop>& loops, const Progress& progress) {
+  ProgressSteps unseen(progress.part(0, 0), 1);
+  tell_kinds(surface, loops, unseen);
+}
+
+void tell_kinds(const TriangleSurface& surface, std::vector<SurfaceLoop>& loops, ProgressSteps& steps) {
   if (loops.empty()) return;
   const std::vector<int> component = components_of_faces(surface);
   std::vector<int> of_point(surface.points.size(), -1);
@@ -162,14 +167,16 @@ void tell_kinds(const TriangleSurface& surface, std::vector<SurfaceLoop>& loops,
   for (std::size_t i = 0; i < loops.size(); ++i) loops_of[of_point[loops[i].points[0]]].push_back(i);
   for (std::size_t c = 0; c < faces.size(); ++c) {
     if (loops_of[c].empty()) continue;
-    const WindingNumber winding(surface, std::move(faces[c]), progress);
+    const WindingNumber winding(surface, std::move(faces[c]), steps.progress());
+    steps(static_cast<std::int64_t>(loops_of[c].size()));
     tbb::parallel_for(std::size_t{0}, loops_of[c].size(), [&](std::size_t i) {
-      progress.check();
+      steps.progress().check();
       SurfaceLoop& loop = loops[loops_of[c][i]];
       const auto points = points_of_disk(surface, loop.points);
       double sum = 0;
       for (const Vec3& at : points) sum += std::abs(winding(at));
       loop.kind = sum / static_cast<double>(points.size()) >= 0.5 ? LoopKind::Handle : LoopKind::Tunnel;
+      steps();
     });
   }
 }

@@ -16,7 +16,8 @@ constexpr double longest_detour = 8;
 
 class LoopSnapper {
  public:
-  explicit LoopSnapper(const TriangleSurface& surface) : surface_(surface), query_(surface), graph_(surface), search_(graph_) {}
+  LoopSnapper(const TriangleSurface& surface, const Progress& progress)
+      : surface_(surface), query_(surface, progress.part(0, 0.5)), graph_(surface, progress.part(0.5, 1)), search_(graph_) {}
   std::vector<int> snap(const std::vector<Vec3>& stroke, SnapTightening tightening, const Progress& progress);
 
  private:
@@ -139,13 +140,24 @@ std::vector<int> LoopSnapper::snap(const std::vector<Vec3>& stroke, SnapTighteni
 
 }  // namespace
 
+std::vector<Found<std::vector<int>>> snap_loops(const TriangleSurface& surface, const std::vector<LoopStroke>& strokes, const Progress& progress) {
+  progress.check();
+  for (const LoopStroke& stroke : strokes) {
+    if (stroke.points.size() < 2) throw Error(ErrorCode::InvalidInput, "a loop has fewer than two points");
+    for (const Vec3& p : stroke.points)
+      if (!p.allFinite()) throw Error(ErrorCode::InvalidInput, "a loop has a point that is not finite");
+  }
+  std::vector<Found<std::vector<int>>> loops;
+  if (strokes.empty()) return loops;
+  LoopSnapper snapper(surface, progress);
+  for (const LoopStroke& stroke : strokes) loops.push_back(found([&] { return snapper.snap(stroke.points, stroke.tightening, progress); }));
+  return loops;
+}
+
 Found<std::vector<int>> snap_loop(const TriangleSurface& surface, const std::vector<Vec3>& stroke, SnapTightening tightening,
                                   const Progress& progress) {
-  progress.check();
-  if (stroke.size() < 2) throw Error(ErrorCode::InvalidInput, "a loop has fewer than two points");
-  for (const Vec3& p : stroke)
-    if (!p.allFinite()) throw Error(ErrorCode::InvalidInput, "a loop has a point that is not finite");
-  return found([&] { return LoopSnapper(surface).snap(stroke, tightening, progress); });
+  // One of many steps of its caller's, who tells how far they are.
+  return snap_loops(surface, {{stroke, tightening}}, progress.part(0, 0)).front();
 }
 
 }  // namespace hybrid_mesh

@@ -11,7 +11,7 @@ namespace hybrid_mesh {
 // Where patches meet the surface that they are to join. Exact. Queries from several threads at once are safe; keeps a reference to the surface.
 class PatchHits {
  public:
-  explicit PatchHits(const TriangleSurface& surface) : surface_(surface), query_(surface) {}
+  PatchHits(const TriangleSurface& surface, const Progress& progress) : surface_(surface), query_(surface, progress) {}
 
   // How many triangles of the patch meet the surface elsewhere than at the corners and edges that they share with it. `rim` are the surface's points
   // that the patch's first ones are; faces in `hidden`, which is sorted, do not count. No more than `most` are counted.

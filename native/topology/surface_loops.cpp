@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/progress_steps.h"
 #include "topology/loop_cap.h"
 #include "topology/loop_graph.h"
 #include "topology/loop_kind.h"
@@ -45,12 +46,16 @@ void sort_candidates(std::vector<Candidate>& all) {
 
 class LoopFinder {
  public:
-  LoopFinder(const TriangleSurface& surface, const LoopOptions& options) : surface_(surface), options_(options), graph_(surface) {}
+  LoopFinder(const TriangleSurface& surface, const LoopOptions& options, const Progress& progress)
+      : surface_(surface), options_(options), graph_(surface, progress) {}
 
-  std::vector<std::vector<int>> find(const std::vector<std::vector<int>>& given, const Progress& progress);
+  // The loops, and in kept() which of those given are the first ones.
+  std::vector<std::vector<int>> find(const std::vector<GivenLoop>& given, const Progress& progress);
+  const std::vector<int>& kept() const { return kept_; }
 
  private:
-  void take_given(const std::vector<std::vector<int>>& given);
+  void take_given(const std::vector<GivenLoop>& given);
+  std::string obstacle(const std::vector<int>& loop) const;
   void find_roots();
   bool take_all(const Progress& progress);
   bool take_some(const Progress& progress);
@@ -60,58 +65,69 @@ class LoopFinder {
   void stand_alone(std::size_t loop);
   std::vector<Candidate> around_points(const std::vector<int>& points, double bound, const Progress& progress);
   std::vector<Candidate> candidates(const Progress& progress);
-  Candidate tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const;
+  Candidate tightened(LoopSearch& search, std::vector<int> loop, ProgressSteps& steps) const;
 
   const TriangleSurface& surface_;
   const LoopOptions& options_;
   LoopGraph graph_;
   std::vector<std::vector<int>> roots_;  // per start: one point a component
   std::vector<std::vector<int>> taken_;
-  std::size_t given_ = 0;
+  std::vector<int> kept_;  // the given loops that the first ones of taken_ are
   tbb::enumerable_thread_specific<LoopSearch> searches_{[this] { return LoopSearch(graph_); }};
 };
 
-std::vector<std::vector<int>> LoopFinder::find(const std::vector<std::vector<int>>& given, const Progress& progress) {
+std::vector<std::vector<int>> LoopFinder::find(const std::vector<GivenLoop>& given, const Progress& progress) {
   take_given(given);
-  given_ = given.size();
-  if (static_cast<int>(given_) == graph_.genus()) return taken_;
+  if (static_cast<int>(taken_.size()) == graph_.genus() || options_.longest <= 0) return taken_;
   find_roots();
   // Short loops may leave no room for others where triangles are large: then those of few points are taken, then others.
   constexpr std::uint64_t attempts = 8;
+  constexpr double first = 0.6;  // of the time, where the first attempt succeeds
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
     graph_.measure(attempt == 0 ? EdgeMeasure::Length : attempt == 1 ? EdgeMeasure::Count : EdgeMeasure::Random, attempt);
-    if (take_all(progress)) {
+    const auto later = [&](std::uint64_t number) { return first + (1 - first) * static_cast<double>(number - 1) / (attempts - 1); };
+    if (take_all(attempt == 0 ? progress.part(0, first) : progress.part(later(attempt), later(attempt + 1)))) {
       if (attempt == 0) {
-        polish(progress);
-        clear_caps(progress);
+        polish(progress.part(first, 0.85));
+        clear_caps(progress.part(0.85, 1));
       }
       return taken_;
     }
     graph_.forget_taken();
-    taken_.clear();
     take_given(given);
   }
   throw NoMap("the triangles leave no room for " + std::to_string(graph_.genus()) + " loops that do not touch each other: subdivide the surface");
 }
 
-void LoopFinder::take_given(const std::vector<std::vector<int>>& given) {
+void LoopFinder::take_given(const std::vector<GivenLoop>& given) {
+  taken_.clear();
+  kept_.clear();
   for (std::size_t i = 0; i < given.size(); ++i) {
-    const std::vector<int>& loop = given[i];
-    const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::InvalidInput, "loop " + std::to_string(i) + " " + why); };
-    if (loop.size() < 3) refuse("has fewer than three points");
-    for (const int v : loop)
-      if (v < 0 || v >= graph_.point_count()) refuse("has the point " + std::to_string(v) + ", which does not exist");
-    std::vector<int> sorted = loop;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) refuse("passes through a point twice");
-    if (graph_.touches_wall(loop)) refuse("touches a boundary or a loop before it");
-    for (std::size_t k = 0; k < loop.size(); ++k)
-      if (const int v = loop[k], next = loop[(k + 1) % loop.size()]; !graph_.arc(v, next))
-        refuse("has no edge between its points " + std::to_string(v) + " and " + std::to_string(next));
-    if (!graph_.take(loop)) refuse("separates the surface, alone or together with loops before it");
-    taken_.push_back(loop);
+    std::string why = obstacle(given[i].points);
+    if (why.empty() && !graph_.take(given[i].points)) why = "separates the surface, alone or together with loops before it";
+    if (why.empty()) {
+      taken_.push_back(given[i].points);
+      kept_.push_back(static_cast<int>(i));
+    } else if (!given[i].name.empty()) {
+      throw Error(ErrorCode::InvalidInput, given[i].name + " " + why);
+    }
   }
   graph_.renew_keys();
+}
+
+// Why it is no simple cycle of edges off the walls; empty if it is one.
+std::string LoopFinder::obstacle(const std::vector<int>& loop) const {
+  if (loop.size() < 3) return "has fewer than three points";
+  for (const int v : loop)
+    if (v < 0 || v >= graph_.point_count()) return "has the point " + std::to_string(v) + ", which does not exist";
+  std::vector<int> sorted = loop;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return "passes through a point twice";
+  if (graph_.touches_wall(loop)) return "touches a boundary or a loop before it";
+  for (std::size_t k = 0; k < loop.size(); ++k)
+    if (const int v = loop[k], next = loop[(k + 1) % loop.size()]; !graph_.arc(v, next))
+      return "has no edge between its points " + std::to_string(v) + " and " + std::to_string(next);
+  return "";
 }
 
 // Points far from each other, each as far from the middle of its component or from those before it as can be.
@@ -150,9 +166,12 @@ bool LoopFinder::take_all(const Progress& progress) {
   const int genus = graph_.genus();
   const auto first = taken_.size();
   while (static_cast<int>(taken_.size()) < genus) {
-    progress(static_cast<double>(taken_.size() - first) / (genus - static_cast<double>(first)));
-    if (!take_some(progress)) return std::isfinite(options_.longest);
+    // How many rounds there will be is not known: most loops are found in the first one.
+    constexpr double most = 0.8;
+    const double done = static_cast<double>(taken_.size() - first) / (genus - static_cast<double>(first));
+    if (!take_some(progress.part(done, done + most * (1 - done)))) return std::isfinite(options_.longest);
   }
+  progress(1);
   return true;
 }
 
@@ -170,30 +189,34 @@ bool LoopFinder::take_some(const Progress& progress) {
 
 std::vector<Candidate> LoopFinder::candidates(const Progress& progress) {
   std::vector<std::vector<std::vector<int>>> found(roots_.size());
-  tbb::parallel_for(std::size_t{0}, roots_.size(), [&](std::size_t s) { found[s] = searches_.local().basis(roots_[s], progress); });
+  ProgressSteps growing(progress.part(0, 0.4), static_cast<std::int64_t>(roots_.size()) * LoopSearch::basis_steps(graph_));
+  tbb::parallel_for(std::size_t{0}, roots_.size(), [&](std::size_t s) { found[s] = searches_.local().basis(roots_[s], growing); });
   std::vector<std::vector<int>> loops;
   for (const auto& some : found) loops.insert(loops.end(), some.begin(), some.end());
   std::vector<Candidate> all(loops.size());
-  tbb::parallel_for(std::size_t{0}, loops.size(), [&](std::size_t i) { all[i] = tightened(searches_.local(), loops[i], progress); });
-  std::sort(all.begin(), all.end(),
-            [](const Candidate& a, const Candidate& b) { return std::tie(a.length, a.points) < std::tie(b.length, b.points); });
-  all.erase(std::unique(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.points == b.points; }), all.end());
+  ProgressSteps tightening(progress.part(0.4, 1), static_cast<std::int64_t>(loops.size()) * options_.tightenings);
+  tbb::parallel_for(std::size_t{0}, loops.size(), [&](std::size_t i) { all[i] = tightened(searches_.local(), loops[i], tightening); });
+  sort_candidates(all);
   return all;
 }
 
 // The loop replaced by the shortest through one of its points, as long as that is shorter. Points are taken from all around it, far from each other.
-Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, const Progress& progress) const {
+// Takes as many steps as the options have tightenings.
+Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, ProgressSteps& steps) const {
   double length = search.length_of(loop);
   // As often in vain, around other points each time, and it is tight.
   constexpr int enough = 6;
   // Fractions of the way round, every two neighbours far apart, and any few of them spread evenly.
   constexpr double step = 0.381966011250105;
   double at = 0;
-  for (int search_number = 0, vain = 0; search_number < options_.tightenings && vain < enough; ++search_number) {
+  int searches = 0;
+  for (int vain = 0; searches < options_.tightenings && vain < enough; ++searches) {
     at += step;
     at -= std::floor(at);
     // Sums in another order give other last digits: not shorter by more than that is as long.
-    std::vector<int> other = search.shortest(loop[static_cast<std::size_t>(at * static_cast<double>(loop.size()))], length * (1 - 1e-9), progress);
+    const auto base = static_cast<std::size_t>(at * static_cast<double>(loop.size()));
+    std::vector<int> other = search.shortest(loop[base], length * (1 - 1e-9), steps.progress());
+    steps();
     ++vain;
     if (other.empty()) continue;
     const double before = length;
@@ -201,6 +224,7 @@ Candidate LoopFinder::tightened(LoopSearch& search, std::vector<int> loop, const
     loop = std::move(other);
     if (length < 0.999 * before) vain = 0;
   }
+  steps(options_.tightenings - searches);
   return {canonical(std::move(loop)), length};
 }
 
@@ -210,9 +234,11 @@ void LoopFinder::polish(const Progress& progress) {
   // Searches of a large surface take longer, and find less that the first ones did not.
   const auto bases = static_cast<std::size_t>(std::clamp(1000000 / graph_.point_count(), 8, 64));
   if (taken_.size() > most_loops_improved) return;
-  for (std::size_t i = given_; i < taken_.size(); ++i) {
+  ProgressSteps rounds(progress, most_rounds * static_cast<std::int64_t>(taken_.size() - kept_.size()));
+  for (std::size_t i = kept_.size(); i < taken_.size(); ++i) {
     stand_alone(i);
-    for (int round = 0; round < most_rounds; ++round) {
+    int round = 0;
+    for (; round < most_rounds; ++round, rounds()) {
       const std::vector<int> loop = taken_[i];
       std::vector<int> around;
       for (std::size_t k = 0, n = std::min(bases, loop.size()); k < n; ++k) around.push_back(loop[k * loop.size() / n]);
@@ -221,19 +247,21 @@ void LoopFinder::polish(const Progress& progress) {
       if (found.empty()) break;
       taken_[i] = std::move(found[0].points);
     }
+    rounds(most_rounds - round);
   }
 }
 
 // Of loops whose caps meet the surface, others nearby whose caps do so less.
 void LoopFinder::clear_caps(const Progress& progress) {
   if (options_.detour <= 1 || taken_.size() > most_loops_improved) return;
-  const PatchHits hits(surface_);
+  const PatchHits hits(surface_, progress);
   const auto hits_of = [&](const std::vector<int>& loop, int most) {
     std::vector<Vec3> rim;
     for (const int v : loop) rim.push_back(surface_.points[v]);
     return hits.count(loop, cap_loop(rim), {}, most);
   };
-  for (std::size_t i = given_; i < taken_.size(); ++i) {
+  ProgressSteps done(progress, static_cast<std::int64_t>(taken_.size() - kept_.size()));
+  for (std::size_t i = kept_.size(); i < taken_.size(); ++i, done()) {
     int fewest = hits_of(taken_[i], std::numeric_limits<int>::max());
     if (fewest == 0) continue;
     stand_alone(i);
@@ -321,18 +349,22 @@ double cycle_length(const TriangleSurface& surface, const std::vector<int>& loop
   return length;
 }
 
-std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<std::vector<int>>& given, const LoopOptions& options,
+std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<GivenLoop>& given, const LoopOptions& options,
                                     const Progress& progress) {
   progress.stage("finding loops");
   progress.check();
+  LoopFinder finder(surface, options, progress.part(0, 0.1));
   std::vector<SurfaceLoop> loops;
-  for (std::vector<int>& points : LoopFinder(surface, options).find(given, progress)) {
+  for (std::vector<int>& points : finder.find(given, progress.part(0.1, 0.8))) {
     const double length = cycle_length(surface, points);
-    loops.push_back({std::move(points), length, LoopKind::Handle});
+    const std::size_t i = loops.size();
+    loops.push_back({std::move(points), length, LoopKind::Handle, i < finder.kept().size() ? finder.kept()[i] : -1});
   }
-  std::stable_sort(loops.begin() + static_cast<std::ptrdiff_t>(given.size()), loops.end(),
+  std::stable_sort(loops.begin() + static_cast<std::ptrdiff_t>(finder.kept().size()), loops.end(),
                    [](const SurfaceLoop& a, const SurfaceLoop& b) { return a.length < b.length; });
-  tell_kinds(surface, loops, progress);
+  progress(0.8);
+  ProgressSteps told(progress.part(0.8, 1), 2 * static_cast<std::int64_t>(loops.size()));
+  tell_kinds(surface, loops, told);
   progress(1);
   return loops;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "base/context.h"
@@ -18,6 +19,13 @@ struct SurfaceLoop {
   std::vector<int> points;  // a simple cycle along edges; the first point is not repeated
   double length = 0;
   LoopKind kind = LoopKind::Handle;
+  int given = -1;  // its place among the loops that were given
+};
+
+// A loop that is there before others are looked for.
+struct GivenLoop {
+  std::vector<int> points;  // a cycle along edges, kept as it is
+  std::string name;         // that an error about it begins with; without one, it is left out where it cannot be kept
 };
 
 struct LoopOptions {
@@ -26,16 +34,17 @@ struct LoopOptions {
   int tightenings = 60;  // points of a loop around which a shorter one is looked for, at most
   // How many times longer than the shortest a loop may be if its cap meets the surface less; 1: the shortest loops are taken.
   double detour = 1.5;
-  // Longer loops are left out. Infinite: there is a loop for each unit of genus.
+  // Longer loops are left out; with 0, none are looked for. Infinite: there is a loop for each unit of genus.
   double longest = std::numeric_limits<double>::infinity();
 };
 
 // Short disjoint loops that separate nothing together, as many as the surface's genus, summed over its components: cut along them and capped, every
-// component has genus 0. Boundary loops count as capped, and no loop touches one. The shortest come first, after those of `given`: cycles along
-// edges that are kept as they are. The same for any number of threads.
-// Throws Error{InvalidInput} that names a given loop which is no simple cycle of edges, meets a boundary or another one, or separates the surface
-// together with those before it; NoMap if the triangles leave no room for as many disjoint loops: a finer surface has them.
-std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<std::vector<int>>& given, const LoopOptions& options,
+// component has genus 0. Boundary loops count as capped, and no loop touches one. Those that are given come first, in their order, then the shortest
+// ones. The same for any number of threads.
+// A given loop cannot be kept if it is no simple cycle of edges, meets a boundary or one before it, or separates the surface together with those
+// before it. Throws Error{InvalidInput} if that is one with a name; NoMap if the triangles leave no room for as many disjoint loops: a finer surface
+// has them.
+std::vector<SurfaceLoop> find_loops(const TriangleSurface& surface, const std::vector<GivenLoop>& given, const LoopOptions& options,
                                     const Progress& progress);
 
 enum class SnapTightening {
@@ -50,6 +59,13 @@ enum class SnapTightening {
 // one that is not finite.
 Found<std::vector<int>> snap_loop(const TriangleSurface& surface, const std::vector<Vec3>& stroke, SnapTightening tightening,
                                   const Progress& progress);
+
+struct LoopStroke {
+  std::vector<Vec3> points;
+  SnapTightening tightening = SnapTightening::None;
+};
+// snap_loop() for each of them.
+std::vector<Found<std::vector<int>>> snap_loops(const TriangleSurface& surface, const std::vector<LoopStroke>& strokes, const Progress& progress);
 
 // The boundary loops, each as the points that its half-edges (those without an opposite) leave, in their order.
 std::vector<std::vector<int>> boundary_cycles(const TriangleSurface& surface);

@@ -22,6 +22,7 @@ ClosedNoise close_noise(const TriangleSurface& surface, double length, const Pro
     std::vector<TopologyEvent> events;
     for (const SurfaceLoop& loop : loops) events.push_back({EventKind::Cut, {loop.points, {}}, loop.length, loop.kind});
     SurfaceSeries series = close_topology(closed.surface, std::move(events));
+    progress.check();
     std::vector<int> origin;
     for (const int v : series.point_origin) origin.push_back(v < 0 ? -1 : closed.point_origin[v]);
     closed.point_origin = std::move(origin);

@@ -97,18 +97,6 @@ def compare(points_a, offsets_a, indices_a, points_b, offsets_b, indices_b, samp
     return {"l2": float(numpy.abs(points_a.mean(0) - points_b.mean(0)).max()), "hausdorff": 0.0}
 
 
-def repair(points, offsets, indices, **options):
-    return points, offsets, indices, {}
-
-
-def find_loops(points, offsets, indices, given=(), **options):
-    return []
-
-
-def snap_loop(points, offsets, indices, stroke, tighten=True):
-    raise Unsupported("the stroke leaves the surface")
-
-
 CUBE = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], dtype=float)
 QUADS = numpy.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
 

@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
-import sys
-import time
 
 import numpy
 import pytest
-from hybrid_mesh import _native
-from hybrid_mesh.core import loop_search, loops, plans, process
+from hybrid_mesh.core import loops, plans
 from hybrid_mesh.core.colors import level_color
-from hybrid_mesh.core.process_job import ProcessJob
 
 SQUARE = numpy.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
-TRIANGLES = numpy.array([[0, 1, 2], [0, 2, 3]])
-MESH = (SQUARE, numpy.array([0, 3, 6]), TRIANGLES.ravel().astype(numpy.int32))
 
 
 def test_points_are_text_to_the_last_digit():
@@ -35,6 +29,30 @@ def test_closed_strokes():
     assert loops.closed(SQUARE[:2], 9) is None and loops.closed(SQUARE[[0, 0, 0, 0]], 1) is None and loops.closed(SQUARE * numpy.nan, 1) is None
 
 
+def turned(numbers, line):
+    """A closed line's points from one of them on, in one of the two directions."""
+    line = numpy.asarray(line)
+    return any(numpy.array_equal(numpy.roll(way, -first, axis=0), numbers) for way in (line, line[::-1]) for first in range(len(line)))
+
+
+def test_strokes_go_on_where_others_end():
+    around = numpy.array([[numpy.cos(a), numpy.sin(a), 0] for a in numpy.linspace(0, 2 * numpy.pi, 25)])
+    front, back, beside = around[:13], around[12:], around[:, [2, 0, 1]] + 9
+    for one, other in ((front, back), (front[::-1], back), (front, back[::-1])):
+        ((line, numbers),) = loops.closed_lines([one, other], 0.01)
+        assert numbers == [0, 1] and {tuple(point) for point in line.round(6)} == {tuple(point) for point in around.round(6)}
+        sides = numpy.linalg.norm(line - numpy.roll(line, 1, axis=0), axis=1)
+        assert sides.max() < 1.01 * numpy.linalg.norm(around[1] - around[0])
+    # In thirds, beside one that is closed by itself, and one that is not.
+    found = loops.closed_lines([around[16:], beside, around[:9], beside[:5] + 3, around[8:17]], 0.01)
+    assert [numbers for _, numbers in found] == [[1], [0, 2, 4]] and turned(found[0][0], beside[:-1])
+    # Half of it, what is too far apart, ends that meet one other only, and scribbles as short as the gap.
+    assert loops.closed_lines([front], 0.01) == [] and loops.closed_lines([front, back * 1.02], 0.01) == []
+    assert loops.closed_lines([front, back[:6], back[6:]], 0.01) == []
+    assert loops.closed_lines([around[:2] * 0.01, around[1:3] * 0.01], 1) == []
+    assert loops.closed_lines([], 1) == [] and loops.closed_lines([numpy.full((5, 3), numpy.nan)], 1) == []
+
+
 def test_points_are_found_by_their_places():
     points = numpy.random.default_rng(2).normal(size=(500, 3))
     points[::7, 0] = 0.5  # many in a plane
@@ -42,12 +60,6 @@ def test_points_are_found_by_their_places():
     assert loops.numbers_at(points, [*moved, [9, 9, 9]]).tolist() == [3, 70, 77, -1]
     assert numpy.array_equal(loops.moved_to(points, [*moved, [9, 9, 9]]), [*points[[3, 70, 77]], [9, 9, 9]])
     assert loops.numbers_at(numpy.zeros((0, 3)), SQUARE).tolist() == [-1] * 4
-
-
-def test_cycles():
-    assert loops.is_cycle([0, 1, 2, 3], TRIANGLES) and loops.is_cycle([2, 1, 0], TRIANGLES)
-    for other in ([0, 1], [0, 1, 3], [0, 1, 2, 1], [0, 1, -1], [0, 1, 9]):
-        assert not loops.is_cycle(other, TRIANGLES)
 
 
 def test_a_plan_of_topology_alone():
@@ -65,81 +77,3 @@ def test_a_plan_of_topology_alone():
 def test_levels_have_colours_of_their_own():
     colors = [level_color(level) for level in range(-1, 9)]
     assert len(set(colors)) == len(colors) and all(0 <= value <= 1 for color in colors for value in color)
-
-
-class Native:
-    """find_loops() refuses given loops that share a point with one before, and finds one more at points 0, 1, 2 if it may."""
-
-    InvalidInput, Unsupported = _native.InvalidInput, _native.Unsupported
-
-    def repair(self, points, offsets, indices):
-        return points, offsets, indices, {}
-
-    def find_loops(self, points, offsets, indices, given=(), longest=numpy.inf):
-        taken = set()
-        for number, loop in enumerate(given):
-            if taken & set(loop):
-                raise self.InvalidInput(f"loop {number} touches a boundary or a loop before it")
-            taken |= set(loop)
-        found = [*given, *([] if longest < 1 or taken & {0, 1, 2} else [[0, 1, 2]])]
-        return [{"positions": points[list(loop)], "length": 1.0, "kind": "tunnel"} for loop in found]
-
-    def snap_loop(self, points, offsets, indices, stroke, tighten=True):
-        if numpy.abs(stroke).max() > 5:
-            raise self.Unsupported("the stroke leaves the surface")
-        return [0, 2, 3]
-
-
-@pytest.fixture
-def search(monkeypatch):
-    monkeypatch.setattr(loop_search, "native", Native)
-    return lambda own, drawn, complete: [(loop["source"], loop["drawn"], len(loop["points"])) for loop in loop_search.search(MESH, own, drawn, complete)]
-
-
-def test_a_search_for_loops(search):
-    drawn, found, gone = ({"points": points.tolist(), "drawn": is_drawn} for points, is_drawn in ((SQUARE[:3], True), (SQUARE[[0, 2, 3]], False), (SQUARE + 9, False)))
-    assert search([], [], True) == [(-1, False, 3)] and search([], [], False) == []
-    assert search([drawn], [], True) == [(0, True, 3)]
-    # What was found gives way to what is drawn, and what is not on the surface any more is forgotten.
-    assert search([found, drawn, gone], [], False) == [(1, True, 3)]
-    assert search([found], [SQUARE], False) == [(-1, True, 3)]
-    assert search([gone], [SQUARE], False) == [(-1, True, 3)]
-
-
-@pytest.mark.parametrize(
-    "own, drawn, words",
-    [
-        ([SQUARE[:3]], [SQUARE], "stroke 1 touches a boundary"), ([], [SQUARE, SQUARE], "stroke 2 touches"), ([], [SQUARE + 9], "stroke 1: the stroke leaves"),
-        ([SQUARE + 9], [], "loop 1 is not on the surface"), ([SQUARE[:3], SQUARE[:3]], [], "loop 2 touches"),
-    ],
-)  # fmt: skip
-def test_what_is_drawn_is_never_dropped(search, own, drawn, words):
-    with pytest.raises(loops.LoopError, match=words):
-        search([{"points": points.tolist(), "drawn": True} for points in own], drawn, True)
-
-
-JOB = {"kind": "find_loops", "loops": [], "strokes": [], "search": True}
-
-
-def test_a_search_in_a_process_of_its_own():
-    job = ProcessJob(JOB, MESH, "finding loops")
-    assert job.stage == "finding loops" and 0 <= job.progress <= 1
-    assert not job.wait(0) or job.done
-    assert job.result() == {"loops": []} and job.wait() and job.done
-
-
-def test_a_failure_is_one_line():
-    job = ProcessJob({**JOB, "strokes": [(SQUARE + 9).tolist()]}, MESH, "")
-    with pytest.raises(process.WorkerFailed, match="^stroke 1: the stroke leaves the surface$"):
-        job.result()
-
-
-def test_a_search_ends_at_once(monkeypatch):
-    monkeypatch.setattr(process, "worker_command", lambda needs_bpy=False: [sys.executable, "-c", "import time; time.sleep(60)"])
-    job = ProcessJob(JOB, MESH, "")
-    time.sleep(0.3)
-    began = time.monotonic()
-    job.cancel()
-    assert job.wait(5) and time.monotonic() - began < 1
-    with pytest.raises(process.WorkerFailed, match="cancelled"):
-        job.result()

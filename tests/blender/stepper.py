@@ -70,6 +70,24 @@ def press(key):
     window.event_simulate(type=key, value="RELEASE", **where)
 
 
+def draw(path):
+    """Draws a line by mouse through places of the window, in pixels. Use with `yield from`."""
+    window = bpy.context.window_manager.windows[0]
+
+    def event(kind, value, place):
+        window.event_simulate(type=kind, value=value, x=int(place[0]), y=int(place[1]))
+
+    event("MOUSEMOVE", "NOTHING", path[0])
+    yield 0.2
+    event("LEFTMOUSE", "PRESS", path[0])
+    yield 0.1
+    for place in path:
+        event("MOUSEMOVE", "NOTHING", place)
+        yield 0.02
+    event("LEFTMOUSE", "RELEASE", path[-1])
+    yield 1
+
+
 def wait_until(condition, limit=200.0):
     """Yields until the condition holds; fails after `limit` seconds. Use with `yield from`; returns the seconds that it took."""
     began = time.monotonic()
@@ -80,7 +98,7 @@ def wait_until(condition, limit=200.0):
 
 
 def cancel_by_escape(start, unchanged, delays):
-    """Starts a job and presses Esc some seconds later, once for each delay. Use with `yield from`.
+    """Starts a job and presses Esc some seconds later, or once a function says so, for each of the delays. Use with `yield from`.
 
     start(): runs the operator, in the context of the 3D view; unchanged(): asserts that nothing is left of it.
     """
@@ -89,11 +107,14 @@ def cancel_by_escape(start, unchanged, delays):
     for delay in delays:
         with bpy.context.temp_override(**view()):
             assert start() == {"RUNNING_MODAL"}
-        yield delay
+        if callable(delay):
+            yield from wait_until(delay)
+        else:
+            yield delay
         assert jobs.running(), "it was done before Esc could be pressed"
         press("ESC")
         seconds = yield from wait_until(lambda: not jobs.running(), 10)
-        print(f"Esc after {delay} s: ended in {seconds:.2f} s")
+        print(f"Esc {'where it was asked for' if callable(delay) else f'after {delay} s'}: ended in {seconds:.2f} s")
         yield 0.2
         unchanged()
         yield 1

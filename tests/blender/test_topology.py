@@ -173,6 +173,45 @@ def test_levels_that_are_given(world, place):
     assert [loop["length"] for loop in report["topology"]["loops"]] == pytest.approx([loop.length for loop in values.loops], rel=1e-4)
 
 
+def test_a_level_without_room_is_told(world, capfd):
+    obj = plate(world, 2, **PLACES[2])
+    values = find(obj)
+    # Level 1 of a base of a few quads has too few for a tube.
+    values.loops[0].level = 1
+    collection, _, _ = world.remesh(obj, vertices=3000, base="MIN")
+    opened = report_of(collection)["topology"]["loops"][0]["level"]
+    told = capfd.readouterr().out
+    assert opened > 1 and f"loop 1 opens on level {opened}: there was no room for it on level 1" in told and "loop 2" not in told
+    values.loops[0].level = opened
+    collection, _, _ = world.remesh(obj, vertices=3000, base="MIN")
+    assert report_of(collection)["topology"]["loops"][0]["level"] == opened and "no room" not in capfd.readouterr().out
+
+
+def test_faces_tell_what_opened_there(world):
+    obj = plate(world, 2, location=(3, 0, 1))
+    find(obj)
+    collection, levels, _ = world.remesh(obj, vertices=3000, base="MIN")
+    loops = report_of(collection)["topology"]["loops"]
+    assert [loop["number"] for loop in loops] == [1, 2]
+    face_numbers = module("bridge.meshes").face_numbers
+    plan = json.loads(collection.hybrid_mesh.plan.as_string())
+    assert [event["level"] for event in plan["topology"]] == [loop["level"] for loop in loops]
+    for level in levels:
+        number, opened, depth = face_numbers(level, "opened"), face_numbers(level, "opened_level"), int(level.name.rsplit(".", 1)[1][1:])
+        before = level.name.rsplit(".", 1)[1].startswith("M")
+        there = {loop["number"]: loop["level"] for loop in loops if loop["level"] < depth or (loop["level"] == depth and not before)}
+        assert set(number.tolist()) == {0, *there} and all(set(opened[number == one].tolist()) == {at} for one, at in there.items())
+        assert (opened[number == 0] == 0).all()
+        irregular = numpy.zeros(len(number), dtype=bool)
+        level.data.attributes["irregular"].data.foreach_get("value", irregular)
+        assert irregular[number > 0].all()
+    # Around each loop, the faces say so.
+    middles = numpy.array([tuple(levels[-1].matrix_world @ polygon.center) for polygon in levels[-1].data.polygons])
+    for one, loop in enumerate(obj.hybrid_mesh_topology.loops, 1):
+        nearest = [numpy.linalg.norm(middles - point, axis=1).argmin() for point in points_of(obj, loop)]
+        assert (number[nearest] == one).all()
+
+
 def test_loops_that_are_left_out_are_in_the_base(world):
     obj = plate(world, 2)
     values = find(obj)
@@ -219,6 +258,16 @@ def test_a_drawn_loop(world):
     find(obj)
     assert [loop.drawn for loop in values.loops] == [True, False] and [loop.level for loop in values.loops] == [4, -1]
     assert numpy.abs(points_of(obj, values.loops[0]) - loop).max() < 1e-6
+
+
+def test_a_loop_drawn_from_two_sides(world):
+    obj = plate(world, 2)
+    line = around_bar(obj, 1)
+    draw(obj, [line[:21], line[:12] + 20, line[20:][::-1]])  # the second one goes on nowhere
+    assert bpy.ops.hybrid_mesh.draw_loop() == {"FINISHED"}
+    (loop,) = obj.hybrid_mesh_topology.loops
+    assert loop.drawn and loop.kind == "HANDLE" and len(read(layout_of(obj))) == 1
+    assert numpy.linalg.norm(points_of(obj, loop).mean(axis=0) - line[:-1].mean(axis=0)) < 1
 
 
 def test_found_loops_give_way_to_drawn_ones(world):

@@ -86,24 +86,11 @@ def show_panel():
 
 def draw(corners):
     """Draws a line by mouse through places of the 3D view: (-1, -1) to (1, 1), a unit being the smaller half of its size."""
-    view = stepper.view()
-    window, region = view["window"], view["region"]
+    region = stepper.view()["region"]
     unit = min(region.width, region.height) / 2
     at = [(region.x + region.width / 2 + unit * x, region.y + region.height / 2 + unit * y) for x, y in corners]
     path = [numpy.array(a) + t * (numpy.array(b) - numpy.array(a)) for a, b in zip(at[:-1], at[1:]) for t in numpy.linspace(0, 1, 25)]
-
-    def event(kind, value, place):
-        window.event_simulate(type=kind, value=value, x=int(place[0]), y=int(place[1]))
-
-    event("MOUSEMOVE", "NOTHING", path[0])
-    yield 0.2
-    event("LEFTMOUSE", "PRESS", path[0])
-    yield 0.1
-    for place in path:
-        event("MOUSEMOVE", "NOTHING", place)
-        yield 0.02
-    event("LEFTMOUSE", "RELEASE", path[-1])
-    yield 1
+    yield from stepper.draw(path)
 
 
 def surface(obj):

@@ -24,40 +24,80 @@ def test_the_loop_of_a_torus():
 
 def test_no_loops():
     assert _native.find_loops(*sphere(6)) == [] and _native.find_loops(*cube()) == []
-    assert _native.find_loops(*torus(), longest=1e-3) == []
+    assert _native.find_loops(*torus(), longest=1e-3) == _native.find_loops(*torus(), longest=0) == []
 
 
-def test_given_loops_come_first():
+def had(loop, drawn=False):
+    return {"points": loop["positions"], "drawn": drawn}
+
+
+def test_loops_that_are_there_come_first():
     first, second = _native.find_loops(*two_tori())
-    again = _native.find_loops(*two_tori(), given=[second["points"]])
-    assert [loop["points"].tolist() for loop in again] == [second["points"].tolist(), first["points"].tolist()]
-    with pytest.raises(_native.InvalidInput, match="loop 1 touches"):
-        _native.find_loops(*two_tori(), given=[first["points"], first["points"]])
+    assert not first["drawn"] and first["source"] == -1
+    for drawn in (False, True):
+        again = _native.find_loops(*two_tori(), [had(second, drawn)])
+        assert [loop["points"].tolist() for loop in again] == [second["points"].tolist(), first["points"].tolist()]
+        assert [(loop["drawn"], loop["source"]) for loop in again] == [(drawn, 0), (False, -1)]
+    (alone,) = _native.find_loops(*two_tori(), [had(second)], longest=0)
+    assert alone["points"].tolist() == second["points"].tolist() and alone["kind"] == second["kind"]
+    with pytest.raises(_native.InvalidInput, match="loop 2 touches"):
+        _native.find_loops(*two_tori(), [had(first, True), had(first, True)])
 
 
-@pytest.mark.parametrize("given", [[[0, 1]], [[-1, 0, 1]], [[0, 1, 2**40]], [[[0, 1, 2]]], ["abc"], [[0.5, None]]])
-def test_given_loops_that_are_none(given):
-    with pytest.raises(_native.InvalidInput):
-        _native.find_loops(*torus(), given=given)
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"loops": [{"points": [[0, 0, 0], [1, 0, 0]]}]}, {"loops": [{"drawn": True}]}, {"loops": [[[0, 0, 0], [1, 0, 0]]]}, {"loops": ["abc"]},
+        {"loops": [{"points": [[0, 0, 0]], "drawn": True}]}, {"loops": [{"points": [[0, 0, 0], [1, 0, float("nan")]], "drawn": True}]}, {"strokes": [[[0, 0]]]},
+        {"strokes": [[[0, 0, 0]]]}, {"strokes": ["abc"]}, {"detour": 0}, {"detour": float("nan")}, {"longest": -1}, {"longest": float("nan")},
+    ],
+)  # fmt: skip
+def test_what_is_no_loop_and_no_setting(wrong):
+    for search in (_native.find_loops, _native.start_find_loops):
+        with pytest.raises(_native.InvalidInput):
+            search(*torus(), **wrong).result()
 
 
-@pytest.mark.parametrize("settings", [{"detour": 0}, {"detour": float("nan")}, {"longest": -1}])
-def test_wrong_settings(settings):
-    with pytest.raises(_native.InvalidInput):
-        _native.find_loops(*torus(), **settings)
-
-
-def test_a_stroke_is_snapped():
+def test_strokes_become_loops():
     (loop,) = _native.find_loops(*torus())
     stroke = loop["positions"][::2] * 1.001
-    snapped = _native.snap_loop(*torus(), stroke, tighten=False)
-    assert len(_native.find_loops(*torus(), given=[snapped])) == 1
-    tight = _native.snap_loop(*torus(), stroke)
-    assert len(tight) <= len(snapped)
-    with pytest.raises(_native.Unsupported, match="leaves the surface"):
-        _native.snap_loop(*two_tori(), [[0, 0, 0], [10, 0, 0], [10, 1, 0]])
-    with pytest.raises(_native.InvalidInput):
-        _native.snap_loop(*torus(), [[0, 0]])
+    (drawn,) = _native.find_loops(*torus(), strokes=[stroke])
+    assert drawn["drawn"] and drawn["source"] == -1 and drawn["length"] <= 1.001 * loop["length"] and drawn["kind"] == loop["kind"]
+    # What was found gives way to it, and of two that are drawn the second one is refused.
+    assert [(one["drawn"], one["source"]) for one in _native.find_loops(*torus(), [had(loop)], [stroke])] == [(True, -1)]
+    with pytest.raises(_native.InvalidInput, match="stroke 2 (touches|separates)"):
+        _native.find_loops(*torus(), strokes=[stroke, stroke])
+    with pytest.raises(_native.Unsupported, match="stroke 1: .*leaves the surface"):
+        _native.find_loops(*two_tori(), strokes=[[[0, 0, 0], [10, 0, 0], [10, 1, 0]]])
+
+
+def test_a_search_as_a_job_tells_how_far_it_is():
+    mesh = torus(500, 400)
+    job = _native.start_find_loops(*mesh)
+    seen, stages = [job.progress], {job.stage}
+    while not job.wait(0.005):
+        seen.append(job.progress)
+        stages.add(job.stage)
+    assert seen == sorted(seen) and 0 <= seen[0] and seen[-1] < 1 and job.progress == 1
+    # It moves all the while, and not only from one end to the other.
+    assert len({int(10 * value) for value in seen}) >= 5 and "finding loops" in stages
+    (loop,) = job.result()
+    (again,) = _native.find_loops(*mesh)
+    assert loop["points"].tolist() == again["points"].tolist()
+
+
+def test_a_search_ends_wherever_it_is():
+    mesh = torus(500, 400)
+    assert len(mesh[0]) >= 200_000
+    for begun in (0, 0.05, 0.15, 0.3, 0.5, 0.7, 0.85):
+        job = _native.start_find_loops(*mesh)
+        while job.progress < begun and not job.wait(0.002):
+            pass
+        job.cancel()
+        # Far longer than it takes, so that a busy machine fails no one; what the search had left to do is not done.
+        assert job.wait(10) and job.progress < 1
+        with pytest.raises(_native.Cancelled):
+            job.result()
 
 
 def test_everything_closed():
@@ -109,3 +149,28 @@ def test_components_and_handles_of_one_ball(refinement):
     assert [(level["components"], level["genus"]) for level in told if level["name"].startswith("N")] == [
         (level["components"], level["genus"]) for level in levels
     ]
+    # Faces know what has opened where they were put in: by the numbers of the report, which are the plan's.
+    events = json.loads(result.plan)["topology"]
+    told = [entry for kind in ("loops", "tubes", "boundaries") for entry in report["topology"][kind]]
+    assert {entry["number"]: entry["level"] for entry in told} == {number: event["level"] for number, event in enumerate(events, 1)}
+    hierarchy = result.hierarchy
+    for name in hierarchy.level_names:
+        level, depth = hierarchy.level(name), int(name[1:])
+        assert level["opened"].shape == level["opened_level"].shape == level["patch"].shape
+        for number in set(level["opened"].tolist()) - {0}:
+            faces = level["opened"] == number
+            assert set(level["opened_level"][faces].tolist()) == {events[number - 1]["level"]} and events[number - 1]["level"] <= depth
+            assert level["irregular"][faces].all()
+        assert not level["opened_level"][level["opened"] == 0].any()
+    operations = [hierarchy.operation(i) for i in range(hierarchy.operation_count)]
+    assert sorted(event for operation in operations for event in operation["opens"]) == list(range(len(events)))
+    assert all(events[event]["level"] == operation["level"] for operation in operations for event in operation["opens"])
+
+
+def test_nobody_knows_what_opened_in_a_file(tmp_path):
+    """A file has the quads alone."""
+    result = _native.remesh(*torus(30, 15), {"vertices": 1000, "base": "min"})
+    assert "opened" in result.final_mesh()
+    result.hierarchy.save(tmp_path / "torus.hmesh")
+    loaded = _native.load_hierarchy(tmp_path / "torus.hmesh")
+    assert "opened" not in loaded.final_mesh() and all(not loaded.operation(i)["opens"] for i in range(loaded.operation_count))

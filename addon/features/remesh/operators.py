@@ -2,7 +2,9 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
+from ...bridge import objects
 from ...core import settings as core
+from ..topology import properties as topology_properties
 from .job import RemeshJobOperator, remesh_task
 from .properties import RemeshProperties, apply_settings, core_settings, draw_advanced, draw_settings
 
@@ -38,6 +40,12 @@ class HYBRID_MESH_OT_remesh(RemeshProperties, RemeshJobOperator):
         if not chosen:
             raise ValueError("No mesh object is selected")
         return [remesh_task(obj, graph, settings) for obj in chosen]
+
+    def finish(self, context, results):
+        super().finish(context, results)
+        for task, result in results:
+            source = task.note[0]
+            topology_properties.say_later(self, objects.find(context.scene, source.key), source, result.plan)
 
     def hides_source(self, context):
         return self.hide_source

@@ -5,7 +5,7 @@ import bpy
 
 from ...bridge import meshes, objects, strokes
 from ...core import loops as lines
-from ...core.process_job import ProcessJob
+from ...core.native import native
 from ...core.tasks import Task
 from ...jobs import NativeJobOperator
 from ..layouts import drawing
@@ -45,27 +45,26 @@ class _LoopJobOperator(_OnSurface, NativeJobOperator):
 
     _settings = ()  # (level, use) of each loop that there was
 
-    def task(self, context, surface, chosen, drawn, complete):
-        """A task that makes the list of the `chosen` loops, of drawn strokes, and where it is to be `complete` of all that are missing."""
+    def task(self, context, surface, chosen, drawn, **options):
+        """A task that makes the list of the `chosen` loops, of drawn strokes, and of those that are missing, as far as the native search's options let it look for any."""
         properties.refuse_foreign(surface)
         try:
             with objects.evaluated(context, surface) as graph:
                 source = meshes.read_source(surface, graph)
-            kept = [{"points": properties.world_points(loop, source).tolist(), "drawn": loop.drawn} for loop in chosen]
+            kept = [{"points": points, "drawn": loop.drawn} for loop, points in zip(chosen, properties.world_lines(chosen, source), strict=True)]
         except ValueError as error:
             raise ValueError(f"{surface.name}: {error}") from error
         self._settings = [(loop.level, loop.use) for loop in chosen]
-        job = {"kind": "find_loops", "loops": kept, "strokes": [points.tolist() for points in drawn], "search": complete}
-        return Task(surface.name, lambda: ProcessJob(job, source.mesh, "finding loops"), source)
+        return Task(surface.name, lambda: native().start_find_loops(*source.mesh, kept, drawn, **options), source)
 
     def finish(self, context, results):
-        ((task, answer),) = results
+        ((task, found),) = results
         surface = objects.find(context.scene, task.note.key)
         if surface is None:
             raise ValueError(f"{task.name}: the object is gone from the scene; its loops are not kept")
-        properties.write(surface, task.note, answer["loops"], self._settings)
+        properties.write(surface, task.note, found, self._settings)
         display.show(context, surface)
-        kinds = [loop["kind"] for loop in answer["loops"]]
+        kinds = [loop["kind"] for loop in found]
         words = [_counted(kinds.count(kind), kind) for kind in ("handle", "tunnel") if kind in kinds]
         self.report({"INFO"}, f"{surface.name}: loops around {' and '.join(words)}" if kinds else f"{surface.name} has no handles and no tunnels")
 
@@ -79,11 +78,11 @@ class HYBRID_MESH_OT_find_loops(_LoopJobOperator):
 
     def prepare(self, context):
         surface = properties.surface_of(objects.active(context), context.scene)
-        return [self.task(context, surface, [loop for loop in properties.loops_of(surface) if loop.drawn], [], True)]
+        return [self.task(context, surface, [loop for loop in properties.loops_of(surface) if loop.drawn], [])]
 
 
 class HYBRID_MESH_OT_draw_loop(_LoopJobOperator):
-    """Make loops of the closed strokes that are drawn on the mesh. Each becomes the shortest loop around what it goes around, and found ones in its way give place"""
+    """Make loops of the closed strokes that are drawn on the mesh, or of several that go on where another one ends. Each becomes the shortest loop around what it goes around, and found ones in its way give place"""
 
     bl_idname = "hybrid_mesh.draw_loop"
     bl_label = "Draw Loop"
@@ -96,17 +95,17 @@ class HYBRID_MESH_OT_draw_loop(_LoopJobOperator):
         surface = properties.surface_of(objects.active(context), context.scene)
         drawn = drawing.read_drawn(context, surface)
         gap = drawn.snap * objects.diagonal(surface)
-        chosen = [(stroke, points) for stroke in drawn.strokes if (points := lines.closed(stroke.points, gap)) is not None]
-        if not chosen:
-            raise ValueError(f"No stroke of {drawn.layout[0]} is closed: a loop ends where it begins")
+        closed = lines.closed_lines([stroke.points for stroke in drawn.strokes], gap)
+        if not closed:
+            raise ValueError(f"Nothing in {drawn.layout[0]} is closed: a loop ends where it begins, or where another stroke goes on")
         self._layout = drawn.layout
-        self._used = [(stroke.layer, stroke.number) for stroke, _ in chosen]
-        return [self.task(context, surface, list(properties.loops_of(surface)), [points for _, points in chosen], False)]
+        self._used = [(drawn.strokes[number].layer, drawn.strokes[number].number) for _, numbers in closed for number in numbers]
+        return [self.task(context, surface, list(properties.loops_of(surface)), [points for points, _ in closed], longest=0)]
 
     def finish(self, context, results):
         super().finish(context, results)
         surface = objects.find(context.scene, results[0][0].note.key)
-        made = [number for number, loop in enumerate(results[0][1]["loops"]) if loop["source"] < 0]
+        made = [number for number, loop in enumerate(results[0][1]) if loop["source"] < 0]
         surface.hybrid_mesh_topology.index = made[-1]
         layout = objects.find(context.scene, self._layout)
         # As loops they go on; as strokes they would be sides of quads.

@@ -27,7 +27,7 @@ class HybridMeshLoop(bpy.types.PropertyGroup):
     length: FloatProperty(name="Length", description="As a fraction of the bounding-box diagonal")
     points: StringProperty(name="Points", description="In the space of the object, as JSON")
     level: IntProperty(
-        name="Level", description="The first level that may have it open; -1 for the first one with room for it, 0 for the base", default=-1, min=-1,
+        name="Level", description="It opens on this level, or, where that has no room for it, on the next one that has; -1 for the first one with room for it, 0 for the base", default=-1, min=-1,
         max=limits().most_levels, update=_changed,
     )  # fmt: skip
     use: BoolProperty(name="Late", description="It is closed on the base and opens on a finer level; else it is open in the base", default=True, update=_changed)
@@ -54,9 +54,13 @@ def loops_of(surface):
     return surface.hybrid_mesh_topology.loops if surface.is_property_set("hybrid_mesh_topology") else ()
 
 
-def world_points(loop, source):
-    """The points of a loop in world space, exactly where the meshes.Source has its own; raises LoopError."""
-    return lines.moved_to(source.mesh.points, arrays.transformed(lines.from_text(loop.points), source.matrix))
+def world_lines(loops, source):
+    """The points of each loop in world space, exactly where the meshes.Source has its own; raises LoopError."""
+    found = [arrays.transformed(lines.from_text(loop.points), source.matrix) for loop in loops]
+    if not found:
+        return []
+    # All at once: the surface's points are put in order but once.
+    return numpy.split(lines.moved_to(source.mesh.points, numpy.concatenate(found)), numpy.cumsum([len(points) for points in found])[:-1])
 
 
 def plan_of(surface, source):
@@ -64,11 +68,12 @@ def plan_of(surface, source):
     found = loops_of(surface)
     if not len(found):
         return ""
-    return plans.topology_plan([(world_points(loop, source), loop.level) for loop in found if loop.use and loop.level != 0])
+    late = [loop for loop in found if loop.use and loop.level != 0]
+    return plans.topology_plan([(points, loop.level) for loop, points in zip(late, world_lines(late, source), strict=True)])
 
 
 def write(surface, source, found, settings):
-    """Puts loops in place of those of a mesh object. found: as core.loop_search has them; settings: (level, use) of each of the loops that there were."""
+    """Puts loops in place of those of a mesh object. found: as the native find_loops() gives them; settings: (level, use) of each of the loops that there were."""
     values = surface.hybrid_mesh_topology
     values.loops.clear()
     inverse = numpy.linalg.inv(source.matrix)
@@ -78,7 +83,7 @@ def write(surface, source, found, settings):
         loop = values.loops.add()
         loop.kind = one["kind"].upper()
         loop.length = one["length"] / diagonal
-        loop.points = lines.to_text(arrays.transformed(numpy.array(one["points"]), inverse))
+        loop.points = lines.to_text(arrays.transformed(one["positions"], inverse))
         loop.drawn = one["drawn"]
         if one["source"] >= 0:
             _set(loop, "level", settings[one["source"]][0])
@@ -90,6 +95,16 @@ def _set(values, name, value):
     # What changes nothing is not to be drawn anew.
     if getattr(values, name) != value:
         setattr(values, name, value)
+
+
+def say_later(operator, surface, source, plan):
+    """Says which loops of a mesh object a remesh has opened on later levels than they were given. source: what it has read of it; plan: the text of what it has decided."""
+    asked = [(number, loop) for number, loop in enumerate(loops_of(surface), 1) if loop.use and loop.level > 0]
+    opened = plans.opening_levels(plan) if asked else {}
+    for (number, loop), points in zip(asked, world_lines([loop for _, loop in asked], source), strict=True):
+        level = opened.get(plans.line_key(points), loop.level)
+        if level > loop.level:
+            operator.report({"WARNING"}, f"{surface.name}: loop {number} opens on level {level}: there was no room for it on level {loop.level}, which it was given")
 
 
 def say_unused(operator, surface):

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "base/error.h"
 #include "handled_surfaces.h"
 #include "surface/topology_summary.h"
@@ -13,7 +15,9 @@ namespace hybrid_mesh::testing {
 
 inline std::vector<SurfaceLoop> loops_of(const TriangleSurface& s, const std::vector<std::vector<int>>& given = {}, const LoopOptions& options = {}) {
   Context context;
-  return find_loops(s, given, options, Progress(context));
+  std::vector<GivenLoop> named;
+  for (const std::vector<int>& loop : given) named.push_back({loop, "loop " + std::to_string(named.size())});
+  return find_loops(s, named, options, Progress(context));
 }
 
 inline std::vector<TopologyEvent> cuts_of(const std::vector<SurfaceLoop>& loops) {

@@ -146,7 +146,8 @@ TEST(LoopDetour, AvoidsWhatACapWouldHit) {
   PolygonSoup soup = torus(48, 48, 0.8, 0);
   add(soup, ball(8, 2, Vec3(0, 0, 0), 0.1));  // a ball that floats in the hole's middle
   const TriangleSurface s = repaired(soup);
-  const PatchHits hits(s);
+  Context context;
+  const PatchHits hits(s, Progress(context));
   const auto hits_of = [&](const SurfaceLoop& loop) {
     std::vector<Vec3> rim;
     for (const int v : loop.points) rim.push_back(s.points[v]);

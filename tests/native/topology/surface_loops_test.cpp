@@ -135,7 +135,8 @@ TEST(SurfaceLoops, OfManyComponents) {
   PolygonSoup soup;
   for (int i = 0; i < 200; ++i) {
     PolygonSoup one = i % 10 ? ball(3) : torus(8, 5);
-    for (Vec3& p : one.points) p += Vec3(4 * (i % 15), 4 * (i / 15), 0);
+    const int column = i % 15, row = i / 15;
+    for (Vec3& p : one.points) p += Vec3(4 * column, 4 * row, 0);
     add(soup, one);
   }
   const TriangleSurface s = repaired(soup);
@@ -245,6 +246,20 @@ TEST(SurfaceLoops, RefuseWhatIsGiven) {
   twice.insert(twice.end(), twice.begin(), twice.end());
   says({twice}, "twice");
   says({{0, 0, 0}}, "twice");
+}
+
+TEST(SurfaceLoops, LeaveOutWhatHasNoName) {
+  const TriangleSurface s = repaired(torus(30, 12));
+  Context context;
+  const std::vector<GivenLoop> given{{{0, 1}, ""}, {meridian(5, 12), "the drawn one"}, {meridian(9, 12), ""}};
+  const auto loops = find_loops(s, given, {}, Progress(context));
+  ASSERT_EQ(loops.size(), 1u);
+  EXPECT_EQ(loops[0].points, meridian(5, 12));
+  EXPECT_EQ(loops[0].given, 1);
+  // Where only one without a name is in the way of another, what is missing is looked for.
+  const auto found = find_loops(s, {{{0, 1, 1000000}, ""}}, {}, Progress(context));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].given, -1);
 }
 
 TEST(SurfaceLoops, AreTheSameForAnyNumberOfThreads) {
