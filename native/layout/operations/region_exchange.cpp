@@ -294,6 +294,9 @@ class Exchange {
       if (e.code() != ErrorCode::InvalidInput) throw;
       throw NoMap(std::string("what opens makes no surface: ") + e.what());
     }
+    std::vector<char> on_boundary(out.mesh.points.size(), 0);
+    for (int h = 0; h < static_cast<int>(out.mesh.opposite.size()); ++h)
+      if (out.mesh.opposite[h] < 0 && std::exchange(on_boundary[out.mesh.from(h)], 1)) throw NoMap("what opens touches the region's boundary");
     for (const std::vector<int>& side : part_.sides) {
       std::vector<int>& own = out.sides.emplace_back();
       for (const int v : side) {

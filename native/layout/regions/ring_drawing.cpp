@@ -168,9 +168,9 @@ class RingDrawing {
   }
 
   int half_edge(int a, int b) {
-    int h = 0;
-    while (mesh().from(h) != a || mesh().to(h) != b) ++h;
-    return h;
+    for (int h = 0; h < static_cast<int>(mesh().opposite.size()); ++h)
+      if (mesh().from(h) == a && mesh().to(h) == b) return h;
+    throw Error(ErrorCode::Internal, "a boundary of a ring is not made of the mesh's edges");
   }
 
   int split_boundary_edge(int a, int b, double t) {
