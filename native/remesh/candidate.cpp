@@ -95,6 +95,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
       return regions;
     });
     c.unopened = std::move(late.unopened);
+    c.waited = std::move(late.waited);
     return c;
   };
   Candidate c = made_with(most_quads_to_open(options, budget.vertices), true);

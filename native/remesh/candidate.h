@@ -33,6 +33,7 @@ struct Candidate {
   std::vector<VertexId> finest_irregular;             // sorted
   std::vector<int> opened_on;                         // per event of the topology: the level
   std::vector<std::pair<int, std::string>> unopened;  // events of the topology that found no room above the base, and why
+  std::vector<std::string> waited;                    // per event: why it opened no sooner; empty with a plan
 
   QuadMesh final_mesh;                                // fitted
   std::vector<QuadMesh> level_meshes;                 // of every level, fitted; the last is the final mesh

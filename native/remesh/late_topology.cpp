@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "base/found.h"
@@ -25,6 +26,9 @@ class LateOpening {
 
   LateTopology run() {
     if (!closed().empty() && made_.level() == 0) made_.refine();  // root quads stay
+    for (const int e : closed())
+      if (task_.base.levels[e] < made_.level())
+        reasons_[e] = "nothing opens below level " + std::to_string(made_.level()) + ", on which quads are laid out anew";
     for (bool last = false; !last;) {
       last = 4 * static_cast<std::int64_t>(made_.quads().graph().patch_count()) > most_quads_;
       open_level(last);
@@ -35,6 +39,7 @@ class LateOpening {
       finer_covering_ = {};
     }
     for (const int e : closed()) out_.unopened.push_back({e, reasons_[e]});
+    out_.waited = std::move(reasons_);
     return std::move(out_);
   }
 
@@ -112,8 +117,10 @@ class LateOpening {
 
   std::optional<Opening> find(const LevelState& state, const CoveringQuads& covering, int e, const OpeningRoom& room) {
     const Found<RegionRepatch> region = find_opening(state, covering, e, room);
-    reasons_[e] = region.reason;
-    if (!region) return std::nullopt;
+    if (!region) {
+      reasons_[e] = region.reason;
+      return std::nullopt;
+    }
     try {
       Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
       if (mapped) return Opening{*region, std::move(*mapped)};

@@ -16,6 +16,7 @@ namespace hybrid_mesh {
 struct LateTopology {
   std::vector<Plan::Region> regions;                  // in order
   std::vector<std::pair<int, std::string>> unopened;  // events that found no room before the last level, and why
+  std::vector<std::string> waited;                    // per event: why it did not open on the level before, on which it was to
 };
 
 // Of the finest level on which something may open. An adaptive mesh keeps no more of it than what opens there.

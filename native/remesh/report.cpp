@@ -55,7 +55,10 @@ Json describe_topology(const RemeshTask& task, const Candidate& c) {
   };
   out["removed_handles"] = task.source.removed_handles;
   const double diagonal = task.source.placement.diagonal;
-  for (std::size_t e = 0; e < c.opened_on.size(); ++e) add(task.base.series->events[e], diagonal, c.opened_on[e], "", e + 1);
+  for (std::size_t e = 0; e < c.opened_on.size(); ++e) {
+    const bool later = task.base.levels[e] >= 0 && c.opened_on[e] > task.base.levels[e] && e < c.waited.size();
+    add(task.base.series->events[e], diagonal, c.opened_on[e], later ? c.waited[e] : "", e + 1);
+  }
   for (const BaseSurface::Unopened& u : task.base.unopened) add(u.event, diagonal, 0, u.reason, 0);
   return out;
 }

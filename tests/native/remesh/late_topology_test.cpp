@@ -129,6 +129,12 @@ TEST(LateTopology, LevelsThatAPlanGives) {
   EXPECT_EQ(r.report["topology"]["loops"][0]["level"].get<int>(), usual + 1);
   expect_sound(r);
   expect_levels_as_reported(r);
+  // One without room: then it opens on the next that has, and the report says why.
+  plan["topology"][0]["level"] = 1;
+  const RemeshResult later = run(soup, options, plan.dump());
+  const Json& loop = later.report["topology"]["loops"][0];
+  EXPECT_GT(loop["level"].get<int>(), 1);
+  EXPECT_FALSE(loop.value("reason", "").empty());
   // A level that the mesh does not have: then the base has the handle, and the report says so.
   plan["topology"][0]["level"] = 9;
   const RemeshResult none = run(soup, options, plan.dump());
