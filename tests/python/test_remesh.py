@@ -18,7 +18,7 @@ def result():
 
 
 def check_mesh(mesh):
-    """Shapes and types of a dict of arrays."""
+    """Shapes and types of a dict of arrays. A hierarchy that a remesh has made also knows what opened where."""
     points, faces, corners = len(mesh["points"]), len(mesh["offsets"]) - 1, len(mesh["indices"])
     expected = {
         "points": (np.float64, (points, 3)),
@@ -35,6 +35,8 @@ def check_mesh(mesh):
         "source_face": (np.int32, (points,)),
         "source_weights": (np.float32, (points, 3)),
     }
+    if "opened" in mesh:
+        expected |= {"opened": (np.int32, (faces,)), "opened_level": (np.int32, (faces,))}
     assert {name: (array.dtype, array.shape) for name, array in mesh.items()} == expected
     assert mesh["offsets"][-1] == corners and np.isfinite(mesh["points"]).all()
 
@@ -130,7 +132,7 @@ def test_a_saved_hierarchy_is_loaded_again(result, tmp_path):
     assert loaded.check() == [] and loaded.info() == result.hierarchy.info()
     for name in loaded.level_names:
         ours, theirs = result.hierarchy.level(name), loaded.level(name)
-        assert all(np.array_equal(ours[key], theirs[key]) for key in ours if key != "patch")
+        assert all(np.array_equal(ours[key], theirs[key]) for key in ours if key not in ("patch", "opened", "opened_level"))
     again = tmp_path / "again.hmesh"
     loaded.save(again)
     assert again.read_bytes() == path.read_bytes()
@@ -287,7 +289,8 @@ def test_an_operation_is_copied_to_another_region():
     first = _native.remesh(*mesh, {**settings, "plan": json.dumps({**plan, "operations": [tower]})}).hierarchy
     assert first.operation_count == 1
     operation = first.operation(0)
-    assert set(operation) == {"kind", "level", "quads", "corners", "start", "new_quads"}
+    assert set(operation) == {"kind", "level", "quads", "opens", "corners", "start", "new_quads"}
+    assert operation["opens"] == []
     assert operation["kind"] == "add_cubes" and operation["level"] == 2 and operation["corners"] == 6
     assert sorted(operation["quads"]) == tower["quads"] and operation["start"][0] in tower["quads"] and len(operation["new_quads"]) == 14
 
