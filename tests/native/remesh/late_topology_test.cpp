@@ -2,7 +2,9 @@
 // Topology that is closed on the base and opens on finer levels.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -258,6 +260,41 @@ TEST(LateTopology, LevelsAreMeasuredToTheirOwnSurface) {
         EXPECT_LT(level["closed_surface"]["hausdorff"].get<double>(), 0.2);
       }
     }
+  }
+}
+
+PolygonSoup moved(PolygonSoup soup, const Eigen::Isometry3d& by) {
+  for (Vec3& p : soup.points) p = by * p;
+  return soup;
+}
+
+// Whatever hangs together in whatever way: the right topology on every level, and what finds no room is in the base and said to be.
+TEST(LateTopology, HardCases) {
+  using Eigen::AngleAxisd;
+  using Eigen::Isometry3d;
+  using Eigen::Translation3d;
+  std::vector<std::pair<std::string, PolygonSoup>> cases;
+  cases.push_back({"a chain of twelve rings", testing::plate_with_windows(12, 3)});
+  PolygonSoup linked = torus(32, 16, 0.25);
+  testing::add(linked, moved(torus(32, 16, 0.25), Translation3d(1, 0, 0) * Isometry3d(AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()))));
+  cases.push_back({"two rings, each through the other", linked});
+  PolygonSoup nested = torus(40, 20, 0.45);
+  testing::add(nested, torus(40, 12, 0.2));
+  cases.push_back({"a ring inside a ring", nested});
+  PolygonSoup threaded = torus(40, 20, 0.3);
+  for (const double at : {-0.3, 0.3})
+    testing::add(threaded, moved(torus(32, 12, 0.12), Translation3d(1, at, 0) * Isometry3d(AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()))));
+  cases.push_back({"two rings through one", threaded});
+  for (const auto& [name, soup] : cases) {
+    SCOPED_TRACE(name);
+    RemeshOptions options = late(5000, Refinement::Adaptive);
+    options.components = Components::Joined;
+    const RemeshResult r = run(soup, options);
+    expect_sound(r);
+    expect_levels_as_reported(r);
+    EXPECT_LE(r.final_mesh.points.size(), 5000u);
+    for (const char* what : {"loops", "tubes"})
+      for (const Json& e : r.report["topology"][what]) EXPECT_TRUE(e["level"].get<int>() > 0 || !e.value("reason", "").empty()) << e;
   }
 }
 
