@@ -185,7 +185,10 @@ TEST(LateTopology, ComponentsPartOnAFinerLevel) {
 // Many joints take quads of fine levels, more than a small mesh may have: then some are in the base.
 TEST(LateTopology, TheBoundOnVerticesHoldsWhateverOpens) {
   PolygonSoup balls;
-  for (int i = 0; i < 8; ++i) testing::add(balls, ball(8, 2, Vec3(2.3 * (i % 4), 2.3 * (i / 4), 0.1 * i), 0.7 + 0.05 * i));
+  for (int i = 0; i < 8; ++i) {
+    const int column = i % 4, row = i / 4;
+    testing::add(balls, ball(8, 2, Vec3(2.3 * column, 2.3 * row, 0.1 * i), 0.7 + 0.05 * i));
+  }
   for (const std::int64_t vertices : {700, 1500}) {
     RemeshOptions options = late(vertices, Refinement::Adaptive);
     options.components = Components::Joined;
