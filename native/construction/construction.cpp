@@ -90,7 +90,7 @@ void Construction::begin_level() {
   own_.assign(graph.patch_count(), 0);
   patches_.resize(graph.patch_count());
   std::iota(patches_.begin(), patches_.end(), 0);
-  group_ = patches_;
+  groups_ = DisjointSets(patches_.size());
   towers_.assign(graph.patch_count(), 1);
   opens_.assign(graph.patch_count(), -1);
   vertices_.assign(graph.node_count, {});
@@ -125,14 +125,14 @@ void Construction::apply(MappedEdit mapped) {
 
 void Construction::change(const LayoutEdit& edit, int opens) {
   const std::vector<int> before = patches_;
-  const int first_new = static_cast<int>(group_.size());
+  const int first_new = static_cast<int>(groups_.count());
   int group = -1;
   char towers = edit.rings > 0;
   for (const int q : edit.patches) {
-    const int g = find(before[q]);
+    const int g = groups_.find(before[q]);
     if (g == group) continue;
     towers &= towers_[g];
-    if (group >= 0) group_[std::max(g, group)] = std::min(g, group);
+    if (group >= 0) groups_.join(std::max(g, group), std::min(g, group));
     group = group < 0 ? g : std::min(g, group);
   }
   towers_[group] = towers;
@@ -152,7 +152,7 @@ void Construction::change(const LayoutEdit& edit, int opens) {
   own_ = std::move(own);
   for (std::size_t k = 0; k < change.added.size(); ++k) {
     patches_[change.added[k]] = first_new + static_cast<int>(k);
-    group_.push_back(group);
+    groups_.add_to(group);
     towers_.push_back(1);
     opens_.push_back(opens);
   }
@@ -160,11 +160,6 @@ void Construction::change(const LayoutEdit& edit, int opens) {
   for (std::size_t n = 0; n < change.node.size(); ++n)
     if (change.node[n] >= 0) vertices[change.node[n]] = n < vertices_.size() ? vertices_[n] : Vertex{VertexId(), fresh_++};
   vertices_ = std::move(vertices);
-}
-
-int Construction::find(int a) {
-  while (group_[a] != a) a = group_[a] = group_[group_[a]];
-  return a;
 }
 
 void Construction::close() {
@@ -180,11 +175,11 @@ void Construction::close() {
       left[patches_[q]] = 1;
       nodes[q] = old[patches_[q]];
     } else {
-      groups[find(patches_[q])].added.push_back(static_cast<int>(q));
+      groups[groups_.find(patches_[q])].added.push_back(static_cast<int>(q));
     }
   }
   for (int q = 0; q < old_count; ++q)
-    if (!left[q]) groups[find(q)].removed.push_back(old[q]);
+    if (!left[q]) groups[groups_.find(q)].removed.push_back(old[q]);
   for (const auto& [name, group] : groups) insert(group, towers_[name], nodes);
   for (std::size_t q = 0; q < nodes.size(); ++q) {
     if (patches_[q] >= old_count) root_number_.push_back({nodes[q], quads_.address(static_cast<int>(q)).root});

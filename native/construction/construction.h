@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "construction/addressed_graph.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "layout/level_state.h"
@@ -55,7 +56,6 @@ class Construction {
   void begin_level();
   void change(const LayoutEdit& edit, int opens);
   void insert(const Group& group, bool towers, std::vector<int>& nodes);
-  int find(int a);
 
   HybridMesh mesh_;
   int level_ = 0;
@@ -72,7 +72,7 @@ class Construction {
   std::vector<char> own_;   // per patch: has been given a map on this level
   // Its edits, gathered to operations on disjoint sets of its quads:
   std::vector<int> patches_;      // per patch: its number among all that there ever were on this level
-  std::vector<int> group_;        // per number: union-find of what belongs to one operation
+  DisjointSets groups_;           // of numbers: what belongs to one operation
   std::vector<char> towers_;      // per number: its group grows skin and does nothing else
   std::vector<int> opens_;        // per number: the event that opened with the edit that made it, or -1
   std::vector<Vertex> vertices_;  // per node of the quads

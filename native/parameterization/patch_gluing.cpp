@@ -2,17 +2,12 @@
 #include "parameterization/patch_gluing.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 
 namespace hybrid_mesh {
 namespace {
-
-int find(std::vector<int>& parent, int v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
 
 // The vertices of a map along one side, in its direction.
 std::vector<int> side_chain(const PatchMap& map, int side) {
@@ -71,8 +66,7 @@ class Gluing {
 
   // Per vertex of a map, in their order, its point.
   std::vector<int> join_points() {
-    std::vector<int> parent(offset_.back());
-    std::iota(parent.begin(), parent.end(), 0);
+    DisjointSets joined(offset_.back());
     for (std::size_t q = 0; q < maps_.size(); ++q)
       for (int i = 0; i < 4; ++i) {
         const PatchSide other = graph_.neighbours[q][i];
@@ -80,14 +74,14 @@ class Gluing {
         const std::vector<int>&a = chains_[q][i], &b = chains_[other.patch][other.side];
         if (a.size() != b.size()) throw NoMap("the maps of two neighbouring patches do not share their side");
         for (std::size_t k = 0; k < a.size(); ++k) {
-          const int x = find(parent, a[k]), y = find(parent, b[b.size() - 1 - k]);
-          parent[std::max(x, y)] = std::min(x, y);
+          const int x = joined.find(a[k]), y = joined.find(b[b.size() - 1 - k]);
+          joined.join(std::max(x, y), std::min(x, y));
         }
       }
     std::vector<int> point(offset_.back(), -1);
     for (std::size_t q = 0; q < maps_.size(); ++q)
       for (int v = offset_[q]; v < offset_[q + 1]; ++v) {
-        const int root = find(parent, v);
+        const int root = joined.find(v);
         if (point[root] < 0) {
           point[root] = static_cast<int>(points_.size());
           points_.push_back(maps_[q].positions[v - offset_[q]]);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/disjoint_sets.h"
 #include "surface/edge_groups.h"
 #include "surface/repair_stages.h"
 
@@ -168,21 +169,16 @@ class EdgePairing {
 
 // Vertices around which the faces, joined by all their edges, fall into several parts.
 std::int64_t count_pinched(const RepairMesh& mesh, const EdgeGroups& edges) {
-  std::vector<int> parent(mesh.half_edge_count());  // corners, named by the half-edge that leaves them
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](int c) {
-    while (parent[c] != c) c = parent[c] = parent[parent[c]];
-    return c;
-  };
+  DisjointSets corners(mesh.half_edge_count());  // named by the half-edge that leaves them
   const auto corner = [&](int h, int vertex) { return mesh.from(h) == vertex ? h : TriangleSurface::next(h); };
   for (int e = 0; e < edges.count(); ++e) {
     const int h = edges.of(e)[0];
     for (int i = 1; i < edges.size(e); ++i)
-      for (const int vertex : {mesh.from(h), mesh.to(h)}) parent[find(corner(edges.of(e)[i], vertex))] = find(corner(h, vertex));
+      for (const int vertex : {mesh.from(h), mesh.to(h)}) corners.join(corner(edges.of(e)[i], vertex), corner(h, vertex));
   }
   std::vector<int> fans(mesh.origin.size(), 0);
   for (int c = 0; c < mesh.half_edge_count(); ++c)
-    if (find(c) == c) ++fans[mesh.from(c)];
+    if (corners.is_representative(c)) ++fans[mesh.from(c)];
   return std::count_if(fans.begin(), fans.end(), [](int n) { return n > 1; });
 }
 

@@ -2,31 +2,13 @@
 #include "surface/topology_summary.h"
 
 #include <limits>
-#include <numeric>
 #include <string>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "surface/edge_groups.h"
 
 namespace hybrid_mesh {
-
-namespace {
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) { parent_[find(i)] = find(j); }
-  bool is_representative(int i) const { return parent_[i] == i; }
-
- private:
-  std::vector<int> parent_;
-};
-
-}  // namespace
 
 TopologySummary summarize_topology(const PolygonSoup& soup) {
   if (soup.indices.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))

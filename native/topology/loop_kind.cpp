@@ -3,12 +3,12 @@
 // using generalized winding numbers, 2013; Barill et al., Fast winding numbers for soups and clouds, 2018.
 #include "topology/loop_kind.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "base/parallel.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -169,7 +169,7 @@ void tell_kinds(const TriangleSurface& surface, std::vector<SurfaceLoop>& loops,
     if (loops_of[c].empty()) continue;
     const WindingNumber winding(surface, std::move(faces[c]), steps.progress());
     steps(static_cast<std::int64_t>(loops_of[c].size()));
-    tbb::parallel_for(std::size_t{0}, loops_of[c].size(), [&](std::size_t i) {
+    parallel_for_each_index(static_cast<std::int64_t>(loops_of[c].size()), [&](std::int64_t i) {
       steps.progress().check();
       SurfaceLoop& loop = loops[loops_of[c][i]];
       const auto points = points_of_disk(surface, loop.points);

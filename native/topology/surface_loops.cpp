@@ -4,7 +4,6 @@
 #include "topology/surface_loops.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/progress_steps.h"
 #include "topology/loop_cap.h"
 #include "topology/loop_graph.h"
@@ -190,12 +190,13 @@ bool LoopFinder::take_some(const Progress& progress) {
 std::vector<Candidate> LoopFinder::candidates(const Progress& progress) {
   std::vector<std::vector<std::vector<int>>> found(roots_.size());
   ProgressSteps growing(progress.part(0, 0.4), static_cast<std::int64_t>(roots_.size()) * LoopSearch::basis_steps(graph_));
-  tbb::parallel_for(std::size_t{0}, roots_.size(), [&](std::size_t s) { found[s] = searches_.local().basis(roots_[s], growing); });
+  parallel_for_each_index(static_cast<std::int64_t>(roots_.size()), [&](std::int64_t s) { found[s] = searches_.local().basis(roots_[s], growing); });
   std::vector<std::vector<int>> loops;
   for (const auto& some : found) loops.insert(loops.end(), some.begin(), some.end());
   std::vector<Candidate> all(loops.size());
   ProgressSteps tightening(progress.part(0.4, 1), static_cast<std::int64_t>(loops.size()) * options_.tightenings);
-  tbb::parallel_for(std::size_t{0}, loops.size(), [&](std::size_t i) { all[i] = tightened(searches_.local(), loops[i], tightening); });
+  parallel_for_each_index(static_cast<std::int64_t>(loops.size()),
+                          [&](std::int64_t i) { all[i] = tightened(searches_.local(), loops[i], tightening); });
   sort_candidates(all);
   return all;
 }
@@ -273,7 +274,7 @@ void LoopFinder::clear_caps(const Progress& progress) {
       const double bound = (1 + part * (options_.detour - 1)) * length;
       const std::vector<Candidate> others = around_points(points_near(shortest, part * length / 2), bound, progress);
       std::vector<int> counts(others.size());
-      tbb::parallel_for(std::size_t{0}, others.size(), [&](std::size_t k) {
+      parallel_for_each_index(static_cast<std::int64_t>(others.size()), [&](std::int64_t k) {
         progress.check();
         counts[k] = hits_of(others[k].points, fewest);
       });
@@ -314,7 +315,7 @@ void LoopFinder::stand_alone(std::size_t loop) {
 // The shortest loops through some points, if they are shorter than a bound, shortest first.
 std::vector<Candidate> LoopFinder::around_points(const std::vector<int>& points, double bound, const Progress& progress) {
   std::vector<Candidate> all(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) {
+  parallel_for_each_index(static_cast<std::int64_t>(points.size()), [&](std::int64_t k) {
     LoopSearch& search = searches_.local();
     std::vector<int> loop = search.shortest(points[k], bound, progress);
     if (!loop.empty()) all[k] = {canonical(std::move(loop)), 0};

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 
 namespace hybrid_mesh {
@@ -13,22 +14,17 @@ namespace {
 // `next`: per point on the boundary the one that follows, else -1; `boundary_sides`: how many sides of each face are on the boundary.
 template <class Faces>
 MeshComponents find_components(int points, const Faces& faces, const std::vector<int>& next, int sides, const std::vector<int>& boundary_sides) {
-  std::vector<int> parent(points);
-  for (int v = 0; v < points; ++v) parent[v] = v;
-  const auto root = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets joined(points);
   for (const auto& f : faces)
-    for (const int v : f) parent[root(v)] = root(f[0]);
+    for (const int v : f) joined.join(v, f[0]);
   // Twice points - edges + faces: a side is half an edge, one on the boundary a whole one.
   std::map<int, std::array<int, 2>> found;
-  for (int v = 0; v < points; ++v) found[root(v)][0] += 2;
-  for (std::size_t f = 0; f < faces.size(); ++f) found[root(faces[f][0])][0] += 2 - sides - boundary_sides[f];
+  for (int v = 0; v < points; ++v) found[joined.find(v)][0] += 2;
+  for (std::size_t f = 0; f < faces.size(); ++f) found[joined.find(faces[f][0])][0] += 2 - sides - boundary_sides[f];
   std::vector<char> seen(points, 0);
   for (int v = 0; v < points; ++v) {
     if (next[v] < 0 || seen[v]) continue;
-    ++found[root(v)][1];
+    ++found[joined.find(v)][1];
     for (int w = v; !seen[w]; w = next[w]) seen[w] = 1;
   }
   MeshComponents out;
@@ -37,7 +33,7 @@ MeshComponents find_components(int points, const Faces& faces, const std::vector
     number[v] = static_cast<int>(out.topology.size());
     out.topology.push_back({t[0] / 2, t[1]});
   }
-  for (int v = 0; v < points; ++v) out.of.push_back(number[root(v)]);
+  for (int v = 0; v < points; ++v) out.of.push_back(number[joined.find(v)]);
   return out;
 }
 

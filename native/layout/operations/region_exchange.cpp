@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 
 namespace hybrid_mesh {
@@ -329,23 +329,18 @@ RegionSurface exchanged(const RegionSurface& part, const SurfaceSeries& series, 
 
 std::vector<RegionPiece> pieces_of(const RegionSurface& surface, const PatchRegion& region) {
   const TriangleSurface& mesh = surface.mesh;
-  std::vector<int> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets joined(mesh.points.size());
   for (const auto& f : mesh.faces)
-    for (int i = 1; i < 3; ++i) parent[find(f[i])] = find(f[0]);
+    for (int i = 1; i < 3; ++i) joined.join(f[i], f[0]);
   std::map<int, RegionPiece> pieces;  // by the point that stands for it
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const auto [at, fresh] = pieces.insert({find(static_cast<int>(v)), {}});
+    const auto [at, fresh] = pieces.insert({joined.find(static_cast<int>(v)), {}});
     if (fresh) at->second.euler = 0;
     ++at->second.euler;
   }
   std::vector<int> next(mesh.points.size(), -1);
   for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
-    RegionPiece& piece = pieces[find(mesh.from(h))];
+    RegionPiece& piece = pieces[joined.find(mesh.from(h))];
     if (h % 3 == 0) ++piece.euler;
     if (mesh.opposite[h] < h) --piece.euler;  // each edge once
     if (mesh.opposite[h] < 0) next[mesh.from(h)] = mesh.to(h);
@@ -355,12 +350,12 @@ std::vector<RegionPiece> pieces_of(const RegionSurface& surface, const PatchRegi
   };
   for (int r = 0; r < region.rim_count(); ++r) {
     const int v = surface.corner(region.rims[r]);
-    pieces[find(v)].rims.push_back(r);
+    pieces[joined.find(v)].rims.push_back(r);
     walk(v);
   }
   for (std::size_t v = 0; v < next.size(); ++v) {
     if (next[v] < 0) continue;
-    ++pieces[find(static_cast<int>(v))].open_loops;
+    ++pieces[joined.find(static_cast<int>(v))].open_loops;
     walk(static_cast<int>(v));
   }
   std::vector<RegionPiece> out;

@@ -3,33 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "layout/regions/disk_drawing.h"
 #include "layout/regions/ring_drawing.h"
 
 namespace hybrid_mesh {
 namespace {
-
-// Sets of numbers that are joined step by step.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int of(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  template <class Corners>
-  void join(const Corners& corners) {
-    for (const int c : corners) parent_[of(c)] = of(corners[0]);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 // One piece of a region by itself, with numbers of its own.
 struct Piece {
@@ -43,17 +26,17 @@ struct Piece {
 
 int node_count(const PatchRegion& region, const LayoutEdit& edit) { return static_cast<int>(region.corners.size()) + edit.inner_nodes; }
 
-Piece take_piece(const RegionSurface& whole, const PatchRegion& region, const LayoutEdit& edit, const RegionPiece& of, Joined& points,
-                 Joined& nodes) {
+Piece take_piece(const RegionSurface& whole, const PatchRegion& region, const LayoutEdit& edit, const RegionPiece& of, DisjointSets& points,
+                 DisjointSets& nodes) {
   Piece out;
   for (const int r : of.rims)
     for (int k = region.rims[r]; k < region.rims[r + 1]; ++k) out.corners.push_back(k);
   out.first_rim = region.rims[of.rims.front() + 1] - region.rims[of.rims.front()];
 
-  const int on_surface = points.of(whole.corner(out.corners.front()));
+  const int on_surface = points.find(whole.corner(out.corners.front()));
   std::vector<int> number(whole.mesh.points.size(), -1);
   for (int v = 0; v < static_cast<int>(number.size()); ++v) {
-    if (points.of(v) != on_surface) continue;
+    if (points.find(v) != on_surface) continue;
     number[v] = static_cast<int>(out.surface.point.size());
     out.surface.mesh.points.push_back(whole.mesh.points[v]);
     out.surface.source.push_back(whole.source[v]);
@@ -71,11 +54,11 @@ Piece take_piece(const RegionSurface& whole, const PatchRegion& region, const La
     for (const int v : whole.sides[k]) side.push_back(number[v]);
   }
 
-  const int of_edit = nodes.of(out.corners.front());
+  const int of_edit = nodes.find(out.corners.front());
   const auto corners = static_cast<int>(region.corners.size());
   out.nodes = out.corners;
   for (int n = corners; n < node_count(region, edit); ++n)
-    if (nodes.of(n) == of_edit) out.nodes.push_back(n);
+    if (nodes.find(n) == of_edit) out.nodes.push_back(n);
   std::vector<int> local(node_count(region, edit), -1);
   for (std::size_t n = 0; n < out.nodes.size(); ++n) local[out.nodes[n]] = static_cast<int>(n);
   out.edit.inner_nodes = static_cast<int>(out.nodes.size() - out.corners.size());
@@ -181,9 +164,11 @@ bool has_drawable_pieces(const PatchRegion& region) {
 }
 
 PatchedSurface draw_pieces(RegionSurface& surface, const PatchRegion& region, const LayoutEdit& edit) {
-  Joined points(surface.mesh.points.size()), nodes(node_count(region, edit));
-  for (const auto& face : surface.mesh.faces) points.join(face);
-  for (const auto& quad : edit.quads) nodes.join(quad);
+  DisjointSets points(surface.mesh.points.size()), nodes(node_count(region, edit));
+  for (const auto& face : surface.mesh.faces)
+    for (const int v : face) points.join(v, face[0]);
+  for (const auto& quad : edit.quads)
+    for (const int n : quad) nodes.join(n, quad[0]);
 
   Assembly assembly(surface.sides.size(), edit, node_count(region, edit));
   for (const RegionPiece& of : region.pieces) {
