@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "surface/triangle_intersection.h"
 #include "topology/patch_hits.h"
 
 namespace hybrid_mesh {

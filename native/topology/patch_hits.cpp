@@ -1,41 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "topology/patch_hits.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/intersections.h>
-
 #include <algorithm>
 
+#include "surface/triangle_intersection.h"
+
 namespace hybrid_mesh {
-namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-Kernel::Point_3 exact(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
-Kernel::Triangle_3 triangle(const std::array<const Vec3*, 3>& t) { return {exact(*t[0]), exact(*t[1]), exact(*t[2])}; }
-
-bool flat(const std::array<const Vec3*, 3>& t) { return CGAL::collinear(exact(*t[0]), exact(*t[1]), exact(*t[2])); }
-
-}  // namespace
-
-bool triangles_meet(const std::array<const Vec3*, 3>& a, const std::array<const Vec3*, 3>& b) {
-  for (int k = 0; k < 3; ++k)
-    if (std::max({(*a[0])[k], (*a[1])[k], (*a[2])[k]}) < std::min({(*b[0])[k], (*b[1])[k], (*b[2])[k]}) ||
-        std::max({(*b[0])[k], (*b[1])[k], (*b[2])[k]}) < std::min({(*a[0])[k], (*a[1])[k], (*a[2])[k]}))
-      return false;
-  if (flat(a) || flat(b)) return false;
-  int shared = 0, i = 0, j = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int l = 0; l < 3; ++l)
-      if (a[k] == b[l]) ++shared, i = k, j = l;
-  // Two that share an edge overlap only where they lie on each other.
-  if (shared >= 2) return false;
-  if (shared == 0) return CGAL::do_intersect(triangle(a), triangle(b));
-  // Beyond a common corner they meet only if the side across from it of one of them meets the other.
-  const Kernel::Segment_3 across_a(exact(*a[(i + 1) % 3]), exact(*a[(i + 2) % 3])), across_b(exact(*b[(j + 1) % 3]), exact(*b[(j + 2) % 3]));
-  return CGAL::do_intersect(across_a, triangle(b)) || CGAL::do_intersect(across_b, triangle(a));
-}
 
 int PatchHits::count(const std::vector<int>& rim, const RimPatch& patch, const std::vector<int>& hidden, int most) const {
   int hits = 0;

@@ -22,7 +22,4 @@ class PatchHits {
   SurfaceDistanceQuery query_;
 };
 
-// Do two triangles meet? Exact; corners that they share, by address, do not count, and triangles without area meet nothing.
-bool triangles_meet(const std::array<const Vec3*, 3>& a, const std::array<const Vec3*, 3>& b);
-
 }  // namespace hybrid_mesh

@@ -5,7 +5,8 @@
 
 #include "closed_and_opened.h"
 #include "models.h"
-#include "topology/patch_hits.h"
+#include "surface/closest_point.h"
+#include "surface/triangle_intersection.h"
 #include "topology/topological_noise.h"
 
 namespace hybrid_mesh {

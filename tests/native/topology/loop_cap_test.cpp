@@ -132,15 +132,6 @@ TEST(LoopCap, TubesOfAnyNumbersOfSides) {
       }
 }
 
-TEST(PatchHits, AreThoseBesidesSharedCorners) {
-  const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(0.2, 0.2, -1), e(0.3, 0.2, 1), f(5, 5, 5), g(0.2, 0.3, 1);
-  EXPECT_TRUE(triangles_meet({&a, &b, &c}, {&d, &e, &f}));
-  EXPECT_FALSE(triangles_meet({&a, &b, &c}, {&a, &e, &f}));
-  EXPECT_TRUE(triangles_meet({&a, &b, &c}, {&a, &e, &d}));
-  EXPECT_FALSE(triangles_meet({&a, &b, &c}, {&a, &b, &e}));
-  EXPECT_FALSE(triangles_meet({&a, &b, &c}, {&e, &f, &g}));
-}
-
 // A tall bump stands in the way of the shortest loop's disk through the hole of a torus.
 TEST(LoopDetour, AvoidsWhatACapWouldHit) {
   PolygonSoup soup = torus(48, 48, 0.8, 0);
