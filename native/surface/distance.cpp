@@ -43,6 +43,7 @@ struct Frame {
   double diagonal = 0;
 
   Vec3 local(const Vec3& p) const { return (p / 2 - centre / 2) / scale; }
+  Vec3 from_local(const Vec3& p) const { return centre + p * diagonal; }
 };
 
 struct Faces {
@@ -136,6 +137,11 @@ Faces place(const PolygonSoup& soup, const Frame& frame) {
 
 struct Sums {
   double squares = 0, distances = 0, largest = 0;  // `largest` squared
+  Vec3 farthest = Vec3::Zero();
+
+  void add_largest(double squared, const Vec3& p) {
+    if (squared > largest) largest = squared, farthest = p;
+  }
 };
 
 constexpr std::int64_t block_size = 4096;
@@ -154,7 +160,7 @@ Sums over_blocks(std::int64_t count, const Progress& progress, Add add) {
   for (const Sums& s : blocks) {
     sums.squares += s.squares;
     sums.distances += s.distances;
-    sums.largest = std::max(sums.largest, s.largest);
+    sums.add_largest(s.largest, s.farthest);
   }
   return sums;
 }
@@ -174,21 +180,23 @@ Sums sample(const Faces& from, const SurfaceDistanceQuery& to, const DistanceOpt
       guess = closest.face;
       block_sums.squares += closest.squared_distance;
       block_sums.distances += std::sqrt(closest.squared_distance);
-      block_sums.largest = std::max(block_sums.largest, closest.squared_distance);
+      block_sums.add_largest(closest.squared_distance, p);
     }
   });
 }
 
-// The larger direction; `known` is a distance of some sample.
+// The larger direction; `known` are the sums over some samples.
 HausdorffBounds hausdorff(const SurfaceFaces& a, const SurfaceFaces& b, const SurfaceDistanceQuery& on_a, const SurfaceDistanceQuery& on_b,
-                          double known, const Progress& progress) {
+                          const Sums& known, const Progress& progress) {
   HausdorffOptions options;
-  options.known = known;
+  options.known = std::sqrt(known.largest);
+  options.known_at = known.farthest;
   const HausdorffBounds ab = one_sided_hausdorff(a, b, on_b, options, progress);
   progress(0.5);
   options.known = ab.reached;
+  options.known_at = ab.at;
   const HausdorffBounds ba = one_sided_hausdorff(b, a, on_a, options, progress);
-  return {ba.reached, std::max(ab.at_most, ba.at_most)};
+  return {ba.reached, ba.at, std::max(ab.at_most, ba.at_most)};
 }
 
 void check(const PolygonSoup& soup) {
@@ -238,16 +246,21 @@ SurfaceDistance DistanceReference::distance(const PolygonSoup& other, const Dist
   d.l2_ba = std::sqrt(ba.squares / n);
   d.l2 = std::max(d.l2_ab, d.l2_ba);
   d.mean = std::max(ab.distances, ba.distances) / n;
-  const double known = std::sqrt(std::max(ab.largest, ba.largest));
+  Sums known = ab;
+  known.add_largest(ba.largest, ba.farthest);
   const HausdorffBounds bounds =
       hausdorff({fa.points, fa.triangles, fa.rim}, {fb.points, fb.triangles, fb.rim}, on_a, on_b, known, progress.part(0.7, 0.95));
+  const Frame& frame = prepared_->frame;
   d.hausdorff = bounds.reached;
+  d.farthest = frame.from_local(bounds.at);
   d.hausdorff_bound = bounds.at_most;
   if (prepared_->edges && !fb.boundary.empty()) {
     const std::vector<char> none;
     const SurfaceDistanceQuery &edges_of_a = *prepared_->edges, edges_of_b(fb.points, fb.boundary);
-    d.boundary_hausdorff =
-        hausdorff({fa.points, fa.boundary, none}, {fb.points, fb.boundary, none}, edges_of_a, edges_of_b, 0, progress.part(0.95, 1)).reached;
+    const HausdorffBounds apart =
+        hausdorff({fa.points, fa.boundary, none}, {fb.points, fb.boundary, none}, edges_of_a, edges_of_b, {}, progress.part(0.95, 1));
+    d.boundary_hausdorff = apart.reached;
+    d.boundary_farthest = frame.from_local(apart.at);
   }
   progress(1);
   return d;

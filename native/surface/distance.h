@@ -17,6 +17,8 @@ struct SurfaceDistance {
   double hausdorff_bound = 0;           // the true one is not larger; more than 1 % above `hausdorff` only where finding out would take too long
   double boundary_hausdorff = -1;       // the same as `hausdorff` between the boundary curves; -1 where one surface is closed
   double diagonal = 0;                  // of the first, absolute
+  // The points that `hausdorff` and `boundary_hausdorff` are reached by, of either surface, where the surfaces stand.
+  Vec3 farthest = Vec3::Zero(), boundary_farthest = Vec3::Zero();
 };
 
 struct DistanceOptions {

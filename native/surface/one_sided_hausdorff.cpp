@@ -113,7 +113,7 @@ class Search {
  public:
   Search(const SurfaceFaces& from, const SurfaceFaces& to, const SurfaceDistanceQuery& query, const HausdorffOptions& options,
          const Progress& progress)
-      : from_(from), to_(to), query_(query), options_(options), progress_(progress), best_(options.known) {}
+      : from_(from), to_(to), query_(query), options_(options), progress_(progress), best_(options.known), best_at_(options.known_at) {}
 
   HausdorffBounds run() {
     measure_points();
@@ -137,13 +137,17 @@ class Search {
       parts = split(parts);
       parts = unsettled(static_cast<std::int64_t>(parts.size()), [&](std::int64_t i) { return parts[i]; });
     }
-    return {best_, std::max(threshold(), given_up)};
+    return {best_, best_at_, std::max(threshold(), given_up)};
   }
 
  private:
   static constexpr std::int64_t block_size = 1024;
 
   double threshold() const { return best_ + std::max(options_.tolerance * best_, options_.least_tolerance); }
+
+  void keep_farthest(double distance, const Vec3& p) {
+    if (distance > best_) best_ = distance, best_at_ = p;
+  }
 
   // Calls work(begin, end, block) for the blocks of [0, count) in parallel.
   template <class Work>
@@ -170,7 +174,7 @@ class Search {
         distance_[v] = std::sqrt(closest.squared_distance);
       }
     });
-    for (const double d : distance_) best_ = std::max(best_, d);
+    for (std::int64_t v = 0; v < count; ++v) keep_farthest(distance_[v], from_.points[v]);
   }
 
   // Those of the parts part(0), part(1), ... of which it cannot be said that all their points are nearer than the threshold.
@@ -230,7 +234,8 @@ class Search {
         }
       }
     });
-    for (const Part& part : halves) best_ = std::max(best_, part.largest());
+    for (const Part& part : halves)
+      for (int k = 0; k < 3; ++k) keep_farthest(part.distances[k], part.corners[k]);
     return halves;
   }
   static double side(const Part& part, int k) { return (part.corners[k] - part.corners[(k + 1) % 3]).squaredNorm(); }
@@ -240,6 +245,7 @@ class Search {
   const HausdorffOptions& options_;
   const Progress& progress_;
   double best_;
+  Vec3 best_at_;
   std::vector<double> distance_;  // of the points
   std::vector<int> closest_;
 };

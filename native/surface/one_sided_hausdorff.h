@@ -18,14 +18,16 @@ struct SurfaceFaces {
 
 struct HausdorffOptions {
   double known = 0;                  // a distance that is reached elsewhere: only larger ones are looked for
+  Vec3 known_at = Vec3::Zero();      // by that point
   double tolerance = 0.01;           // relative
   double least_tolerance = 1e-9;     // absolute
   std::int64_t most_splits = 50000;  // of faces and parts of faces
 };
 
 struct HausdorffBounds {
-  double reached = 0;  // `known`, or the distance of some point of `from`
-  double at_most = 0;  // no point of `from` is farther away; within the tolerance of `reached` unless the splits ran out
+  double reached = 0;      // `known`, or the distance of some point of `from`
+  Vec3 at = Vec3::Zero();  // that point
+  double at_most = 0;      // no point of `from` is farther away; within the tolerance of `reached` unless the splits ran out
 };
 
 // The largest distance of a point of `from` to `to`, for which `query` stands. In parallel; the result does not depend on the number of

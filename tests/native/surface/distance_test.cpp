@@ -81,6 +81,26 @@ TEST(Distance, OfSpheres) {
   EXPECT_NEAR(d.hausdorff * d.diagonal, 0.1, 2e-3);
 }
 
+// Whichever surface it is on, and wherever they stand.
+TEST(Distance, NamesTheFarthestPoint) {
+  PolygonSoup a = grid(10, 10), b = a;
+  b.points[60] += Vec3(0, 0, 2);
+  for (Vec3& p : a.points) p = 3 * p + Vec3(100, -50, 7);
+  for (Vec3& p : b.points) p = 3 * p + Vec3(100, -50, 7);
+  EXPECT_LT((distance(a, b).farthest - b.points[60]).norm(), 1e-9);
+  EXPECT_LT((distance(b, a).farthest - b.points[60]).norm(), 1e-9);
+  b = a;
+  b.points[0] += Vec3(-9, -9, 0);
+  EXPECT_LT((distance(a, b).boundary_farthest - b.points[0]).norm(), 1e-9);
+  // A point inside a face: the middle of a square of which the other surface is the rim.
+  const PolygonSoup square = soup_of({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {{0, 1, 2, 3}});
+  const PolygonSoup frame = soup_of({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, 0}},
+                                    {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
+  const SurfaceDistance d = distance(frame, square);
+  EXPECT_NEAR(d.hausdorff * d.diagonal, 1, 0.01);
+  EXPECT_LT((d.farthest - Vec3(2, 2, 0)).norm(), 0.02);
+}
+
 TEST(Distance, TakesTheLargerDirection) {
   PolygonSoup a = cube(), b = cube();
   append(b, moved(cube(), {3, 0, 0}));
