@@ -25,7 +25,8 @@ struct Candidate {
   std::vector<int> plan_root;  // see RemeshResult
   std::vector<int> opened;     // see RemeshResult
   int base_quads = 0, base_vertices = 0;
-  int levels = 0;  // above the base, of a uniform mesh
+  bool base_given = false;  // by a plan
+  int levels = 0;           // above the base, of a uniform mesh
 
   // The last level with operations (0: none), all of whose quads have a map of their own.
   int finest = 0;

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/limits.h"
+#include "remesh/figures.h"
 #include "remesh/level_fits.h"
-#include "remesh/report.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -126,6 +126,7 @@ Candidate planned_candidate(const RemeshTask& task, const Plan& plan) {
   if ((again || !plan.tower) && all) c.plan = options.plan;
   const Budget budget = plan_budget(options, task.source, {});
   const std::int64_t euler = task.source.topology.euler;
+  c.base_given = true;
   c.levels = budget.levels;
   if (options.refinement == Refinement::Uniform && options.levels < 0)
     c.levels = levels_within(budget.vertices, c.finest, c.finest_quads, euler, c.finest_boundary_sides);

@@ -30,11 +30,11 @@ QuadQuality quad_quality(const QuadMesh& mesh) {
     q.triangles += n == 3;
     if (n != 4) continue;
     jacobians.push_back(scaled_jacobian(mesh, f));
+    if (jacobians.size() == 1 || jacobians.back() < q.jacobian_min) q.jacobian_min = jacobians.back(), q.worst = f;
   }
   q.quads = static_cast<std::int64_t>(jacobians.size());
   if (jacobians.empty()) return q;
   std::sort(jacobians.begin(), jacobians.end());
-  q.jacobian_min = jacobians.front();
   q.jacobian_p05 = jacobians[jacobians.size() / 20];
   q.jacobian_median = jacobians[jacobians.size() / 2];
   q.inverted = static_cast<double>(std::upper_bound(jacobians.begin(), jacobians.end(), 0.0) - jacobians.begin()) / jacobians.size();

@@ -11,6 +11,7 @@ struct QuadQuality {
   double jacobian_min = 0, jacobian_p05 = 0, jacobian_median = 0;
   double inverted = 0;  // fraction of the quads
   std::int64_t quads = 0, triangles = 0;
+  std::size_t worst = 0;  // the face with the least scaled Jacobian, the first of them
 };
 
 // Of a face that is a quad.

@@ -2,13 +2,11 @@
 #include "remesh/report.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "hierarchy/stretch.h"
-#include "remesh/protrusion.h"
 #include "remesh/quality.h"
+#include "remesh/verdict.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -89,50 +87,24 @@ double regular_fraction(const Candidate& c) {
   return 1.0 - static_cast<double>(inserted) / static_cast<double>(std::max<std::int64_t>(1, regular));
 }
 
-// Above so many widths of its quads a mesh is farther from the surface than quads of that size explain.
-constexpr double kFarOff = 2;
-constexpr double kManyInverted = 0.001;  // of the quads
-
 Json describe_shapes(const QuadQuality& q) {
   return {{"min", q.jacobian_min}, {"p05", q.jacobian_p05}, {"p50", q.jacobian_median}, {"inverted", q.inverted}};
 }
 
-// What was asked for and could not be had, and where the result is poor.
-Json warnings(const RemeshTask& task, const Candidate& c) {
-  const RemeshOptions& options = task.options;
+Json describe_verdict(const std::vector<Reason>& reasons, const Placement& placement) {
   Json list = Json::array();
-  if (options.error > 0 && c.distance.l2 > options.error)
-    list.push_back("the error bound of " + scientific(options.error) + " is not met: the L2 distance is " + scientific(c.distance.l2));
-  const double width = mean_width(c.final_mesh), far = c.distance.hausdorff;
-  if (far > kFarOff * width) {
-    const bool limb = protrusion(task.source.repaired, task.source.placement, c.final_mesh) > kFarOff * width;
-    list.push_back("the mesh is up to " + scientific(far) + " of the diagonal away from the surface, " + std::to_string(std::lround(far / width)) +
-                   " widths of its quads: " +
-                   (limb ? "a part that sticks out is lost; a larger base (base_quads) or adaptive refinement may keep it"
-                         : "a fold is closed; more vertices or adaptive refinement follow it"));
+  for (const Reason& reason : reasons) {
+    Json entry{{"what", reason.what}, {"text", reason.text}};
+    if (reason.where) {
+      const Vec3 p = placement.from_unit(*reason.where);
+      entry["where"] = {p.x(), p.y(), p.z()};
+    }
+    list.push_back(std::move(entry));
   }
-  std::string levels;
-  for (std::size_t j = 0; j + 1 < c.level_reports.size(); ++j) {
-    const Json &level = c.level_reports[j], &closed = level["closed_surface"];
-    const double off = (closed.is_null() ? level : closed)["hausdorff"].get<double>() / mean_width(c.level_meshes[j]);
-    if (off > kFarOff) levels += (levels.empty() ? "N" : ", N") + std::to_string(j);
-  }
-  if (!levels.empty())
-    list.push_back("coarser levels are poor: parts of the surface are farther from " + levels + " than " + std::to_string(std::lround(kFarOff)) +
-                   " widths of a quad; a larger base (base_quads) goes out into them");
-  if (const QuadQuality q = quad_quality(c.final_mesh); q.inverted > kManyInverted)
-    list.push_back(std::to_string(std::lround(q.inverted * static_cast<double>(q.quads))) + " of " + std::to_string(q.quads) +
-                   " quads are inverted: the surface is bent or thin there beyond what quads of this size follow; more vertices may help");
-  return list;
+  return {{"result", reasons.empty() ? "good" : "poor"}, {"reasons", std::move(list)}};
 }
 
 }  // namespace
-
-std::string scientific(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2e", value);
-  return text;
-}
 
 Json describe_level(const HybridMesh& hierarchy, int level, const QuadMesh& mesh, const SurfaceDistance& d,
                     const std::optional<SurfaceDistance>& to_closed) {
@@ -164,7 +136,8 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
       t.boundary_loops != topology.boundary_loops || t.euler != topology.euler)
     throw Error(ErrorCode::Internal, "the final mesh does not have the surface's topology");
   const SurfaceDistance& d = c.distance;
-  const QuadQuality q = quad_quality(c.final_mesh);
+  const Finished finished = measured(task, c, task.progress.part(0.95, 1));
+  const QuadQuality& q = finished.quality;
   Json report;
   report["input"] = describe_input(input, task.source);
   report["topology"] = describe_topology(task, c);
@@ -181,9 +154,12 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
                      {"boundary_loops", t.boundary_loops},
                      {"regular_fraction", regular_fraction(c)},
                      {"irregular_vertices", irregular_counts(c)},
-                     {"scaled_jacobian", describe_shapes(q)}};
+                     {"scaled_jacobian", describe_shapes(q)},
+                     {"self_intersections", finished.intersections.pairs},
+                     {"self_intersections_of_input", finished.intersections.pairs_of_input}};
   if (task.options.error > 0) report["final"]["error_bound_met"] = d.l2 <= task.options.error;
-  report["warnings"] = warnings(task, c);
+  report["verdict"] = describe_verdict(reasons_against(finished), task.source.placement);
+  report["warnings"] = warnings(finished);
   return report;
 }
 

@@ -17,7 +17,4 @@ nlohmann::ordered_json describe_level(const HybridMesh& hierarchy, int level, co
 // surface's topology.
 nlohmann::ordered_json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& candidate);
 
-// As messages write errors: 1.23e-04.
-std::string scientific(double value);
-
 }  // namespace hybrid_mesh

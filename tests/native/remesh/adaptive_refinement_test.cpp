@@ -219,14 +219,15 @@ TEST(AdaptiveRemesh, SmallBudgetsAreUsed) {
     }
 }
 
-TEST(AdaptiveRemesh, ErrorsAreMetAsReportedOrMissedWithAWarning) {
+TEST(AdaptiveRemesh, ErrorsAreMetAsReportedOrMissedWithAReason) {
   for (const FaceClosure faces : {FaceClosure::Quads, FaceClosure::Triangles}) {
     const RemeshResult met = remeshed(testing::torus(40, 20), 0, 1e-3, faces);
     EXPECT_LE(met.report["final"]["l2"].get<double>(), 1e-3);
-    EXPECT_TRUE(met.report["warnings"].empty());
+    EXPECT_EQ(met.report["verdict"]["result"], "good");
     const RemeshResult missed = remeshed(testing::torus(40, 20), 400, 1e-5, faces);
     EXPECT_LE(missed.final_mesh.points.size(), 400u);
-    EXPECT_EQ(missed.report["warnings"].size(), 1u);
+    ASSERT_EQ(missed.report["verdict"]["reasons"].size(), 1u);
+    EXPECT_EQ(missed.report["verdict"]["reasons"][0]["what"], "error");
   }
 }
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "remesh/candidate.h"
+#include "remesh/mesh_intersections.h"
+#include "remesh/quality.h"
+
+namespace hybrid_mesh {
+
+// What makes a result poor.
+struct Reason {
+  std::string what;           // a short key
+  std::string text;           // a sentence, with figures
+  std::optional<Vec3> where;  // one place, the worst where there is one; of unit size as the candidate
+};
+
+// A finished remesh, and what of its final mesh is measured for the verdict only.
+struct Finished {
+  const RemeshTask& task;
+  const Candidate& candidate;
+  QuadQuality quality;
+  double width = 0;          // see mean_width()
+  SurfaceDistance distance;  // to the input, without what was removed as asked: components and noise
+  MeshIntersections intersections;
+};
+Finished measured(const RemeshTask& task, const Candidate& candidate, const Progress& progress);
+
+// Everything that makes the result poor; empty for a good one.
+std::vector<Reason> reasons_against(const Finished& finished);
+
+// What is worth knowing but makes no result poor.
+std::vector<std::string> warnings(const Finished& finished);
+
+}  // namespace hybrid_mesh
