@@ -61,12 +61,21 @@ class Batch:
             except OSError as error:
                 self.fail(f"cannot write {os.path.join(folder, 'summary.csv')}: {explain(error)}")
                 failed += 1
+            self._show_counts()
             return failed
         finally:
             self.processes.end()
             shutil.rmtree(self._staging, ignore_errors=True)
             if new and os.path.isdir(folder) and not os.listdir(folder):
                 os.rmdir(folder)
+
+    def _show_counts(self):
+        """The last line of a batch, and of a poor result: nobody reads the lines of a hundred inputs."""
+        count, poor = len(self.rows), sum(row["verdict"] == "poor" for row in self.rows)
+        if count == 1 and not poor:
+            return
+        failed = sum(row["status"] == "failed" for row in self.rows)
+        self.show(f"{count} input{'s' if count > 1 else ''}: {count - failed} done, {failed} failed; {poor} poor result{'s' if poor != 1 else ''}")
 
     def _expand(self, paths):
         items = []
@@ -129,8 +138,14 @@ class Batch:
             self.show(f"{item.label}: done before, skipped")
         else:
             self.show(f"{item.label}: {_figures(report)}")
+        poor = [reports.reason_line(reason) for reason in reports.reasons(report)]
+        for line in poor:
+            self.fail(f"{item.label}: poor: {line}")
         for warning in report.get("warnings", []):
             self.fail(f"{item.label}: warning: {warning}")
+        if poor and self.options.settings.strict:
+            # Its files stay, so that one can look.
+            return reports.summary_row(item.name, item.label, "failed", report, "; ".join(poor))
         return reports.summary_row(item.name, item.label, status, report)
 
     def _do(self, number, item):
@@ -173,7 +188,7 @@ class Batch:
                 report = json.load(file)
         except (OSError, ValueError):
             return None
-        if not isinstance(report, dict) or report.get("hash") != fingerprint or "error" in report:
+        if not isinstance(report, dict) or report.get("hash") != fingerprint or not reports.verdict(report):
             return None
         levels = self.options.outputs.level_suffixes(len(report.get("levels", [])))
         return report if all(os.path.isfile(os.path.join(self.options.folder, item.name + suffix)) for suffix in levels) else None

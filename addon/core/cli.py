@@ -35,7 +35,7 @@ def arguments_of_process():
 
 
 def run(argv):
-    """Does what the arguments say and returns the exit code: 0 done, 1 an input failed, 2 wrong arguments, 130 interrupted."""
+    """Does what the arguments say and returns the exit code: 0 done, 1 an input failed (strict: or is poor), 2 wrong arguments, 130 interrupted."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
@@ -196,7 +196,7 @@ def _parser():
     surface.add_argument(
         "--remove-noise", type=float, default=0.0, metavar="LENGTH", help="close handles with a loop shorter than this fraction of the diagonal for good"
     )
-    surface.add_argument("--strict", action="store_true", help="refuse input that needs repair")
+    surface.add_argument("--strict", action="store_true", help="refuse input that needs repair; a poor result has failed, though its files are written")
     written = command.add_argument_group("output")
     written.add_argument("--export", type=_exports, default=(), metavar="ply,obj", help="write the final mesh in these formats")
     written.add_argument("--export-levels", type=_exports, default=(), metavar="ply,obj", help="write every level too, as NAME.N0.ply, NAME.N1.ply, ...")

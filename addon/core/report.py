@@ -11,7 +11,7 @@ import sys
 SUMMARY_COLUMNS = (
     "name", "input", "status", "error", "input_vertices", "input_faces", "base_quads", "levels", "vertices", "quads", "l2", "hausdorff",
     "boundary_hausdorff", "irregular_vertices", "regular_fraction", "scaled_jacobian_min", "scaled_jacobian_p05", "scaled_jacobian_p50",
-    "inverted", "seconds", "peak_memory_bytes", "warnings",
+    "inverted", "self_intersections", "seconds", "peak_memory_bytes", "verdict", "reasons", "warnings",
 )  # fmt: skip
 
 
@@ -44,6 +44,22 @@ def irregular_count(final):
     return sum(counts.values()) if isinstance(counts, dict) else counts
 
 
+def verdict(report):
+    """"good" or "poor"; empty where there is no verdict: the mesh has changed since it was measured, or there is none."""
+    return (report.get("verdict") or {}).get("result", "")
+
+
+def reasons(report):
+    """What makes the result of a report poor: [{what, text, perhaps where}]."""
+    return (report.get("verdict") or {}).get("reasons", [])
+
+
+def reason_line(reason):
+    """A reason in one line, with its place."""
+    where = f" (at {', '.join(f'{value:.6g}' for value in reason['where'])})" if "where" in reason else ""
+    return reason["text"] + where
+
+
 def quality(report):
     """The figures that people judge a remesh by, from a report; missing ones are None."""
     final = report.get("final", {})
@@ -61,6 +77,7 @@ def quality(report):
         "scaled_jacobian_p05": jacobian.get("p05"),
         "scaled_jacobian_p50": jacobian.get("p50"),
         "inverted": jacobian.get("inverted"),
+        "self_intersections": final.get("self_intersections"),
     }
 
 
@@ -68,7 +85,7 @@ def repatched(report, operation, outcome, most_vertices=0):
     """The report of a hierarchy after one more operation, of which only that part was measured.
 
     operation: {kind, level, quads, new_quads}; outcome: of the native repatch(); most_vertices: the bound that the remesh was given.
-    Distances and shapes of what has changed are None: they were not measured again.
+    Distances, shapes and verdict of what has changed are None: they were not measured again.
     """
     made = copy.deepcopy(report)
     first = operation["level"]
@@ -83,11 +100,14 @@ def repatched(report, operation, outcome, most_vertices=0):
                 {"kind": operation["kind"], "removed_quads": len(operation["quads"]), "new_quads": len(operation["new_quads"])}
             )
     final = made.get("final", {})
-    measured = ("l2", "hausdorff", "boundary_hausdorff", "regular_fraction", "irregular_vertices", "scaled_jacobian")
+    measured = (
+        "l2", "hausdorff", "boundary_hausdorff", "regular_fraction", "irregular_vertices", "scaled_jacobian", "self_intersections",
+        "self_intersections_of_input",
+    )  # fmt: skip
     final.update(dict.fromkeys(measured))
     finest = outcome["levels"][max(outcome["levels"])]
     final.update(finest)
-    made["warnings"] = []
+    made.update(verdict=None, warnings=[])
     before, after = outcome["energy_before"], outcome["energy_after"]
     if not after < before:
         made["warnings"].append(f"the new quads are no better than those that they replace: their distortion, with the rings around, was {before:.3g} and is {after:.3g}")
@@ -108,6 +128,8 @@ def summary_row(name, source, status, report=None, error=""):
         row["levels"] = len(report.get("levels", []))
         row["seconds"] = report.get("seconds", {}).get("total", "")
         row["peak_memory_bytes"] = report.get("peak_memory_bytes", "")
+        row["verdict"] = verdict(report)
+        row["reasons"] = "; ".join(reason_line(reason) for reason in reasons(report))
         row["warnings"] = "; ".join(report.get("warnings", []))
     return row
 

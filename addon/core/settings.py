@@ -52,7 +52,7 @@ class RemeshSettings:
     stretch_threshold: float = 4.0  # above it irregular operations grow skin
     semi_regular: bool = False  # no irregular operations
     drop_components: float = 0.0  # components below this fraction of the area are removed
-    strict: bool = False  # refuse input that needs repair
+    strict: bool = False  # refuse input that needs repair; a poor result is an error
     plan: str = ""  # JSON text of a plan (see core/plans.py) that decides base and irregular operations; empty: they are searched for
     seed: int = 1
     threads: int = 0  # 0 = all cores; never changes the result

@@ -49,7 +49,8 @@ def remesh(job):
 
     stem = os.path.join(job["folder"], job["name"])
     report = finished_report(result.report, job, settings)
-    result.hierarchy.save(stem + ".hmesh", json.dumps({"name": job["name"], "settings": settings.reported(), "version": VERSION}))
+    kept = {"name": job["name"], "settings": settings.reported(), "version": VERSION, "verdict": report.get("verdict")}
+    result.hierarchy.save(stem + ".hmesh", json.dumps(kept))
     write_text(stem + ".plan.json", result.plan)
     if job["exports"]:
         final = result.final_mesh()
@@ -105,10 +106,19 @@ def info(job):
     module = native()
     refuse_unreadable(job["path"])
     hierarchy = module.load_hierarchy(job["path"])
-    answer = {"info": json.loads(hierarchy.info())}
+    answer = {"info": {**json.loads(hierarchy.info()), "verdict": _kept_verdict(hierarchy.metadata)}}
     if job["check"]:
         answer["problems"] = list(hierarchy.check())
     return answer
+
+
+def _kept_verdict(metadata):
+    """The verdict on the remesh that a hierarchy was saved by; None where it was made in another way."""
+    try:
+        kept = json.loads(metadata)
+    except ValueError:
+        return None
+    return kept.get("verdict") if isinstance(kept, dict) else None
 
 
 def write_text(path, text):

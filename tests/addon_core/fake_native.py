@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stands in for the compiled module where a test is about the Python around it.
 
-Every surface becomes the box around it. What an input's file name says happens: crash, hang, refuse.
+Every surface becomes the box around it. What an input's file name says happens: crash, hang, refuse, poor. A box of more than 50 units is poor.
 """
 
 import json
@@ -78,7 +78,8 @@ def read_mesh(path):
             elif words[:1] == ["f"]:
                 indices += [int(word) - 1 for word in words[1:]]
                 offsets.append(len(indices))
-    return numpy.array(points, dtype=float).reshape(-1, 3), numpy.array(offsets, dtype=numpy.int64), numpy.array(indices, dtype=numpy.int32)
+    size = 100 if "poor" in name else 1
+    return size * numpy.array(points, dtype=float).reshape(-1, 3), numpy.array(offsets, dtype=numpy.int64), numpy.array(indices, dtype=numpy.int32)
 
 
 def write_mesh(path, points, offsets, indices):
@@ -184,6 +185,8 @@ class Result:
         self.plan = settings.get("plan") or json.dumps({"format": "hybrid-mesh plan", "version": 1, "base": {}})
         final = self.final_mesh()
         count = len(final["offsets"]) - 1
+        poor = numpy.ptp(points) > 50
+        reasons = [{"what": "hausdorff", "text": "far off", "where": [1.0, 2.0, 0.1]}, {"what": "vertices", "text": "few, and fewer"}] if poor else []
         self.report = json.dumps({
             "input": {"vertices": len(points), "faces": len(offsets) - 1},
             "base": {"quads": 6, "vertices": 8},
@@ -194,8 +197,9 @@ class Result:
             "final": {
                 "vertices": len(final["points"]), "quads": count, "triangles": 0, "l2": 1e-3, "hausdorff": 1e-2,
                 "irregular_vertices": {"base": 8, "operations": 0, "transitions": 0},
-                "scaled_jacobian": {"min": 1, "p05": 1, "p50": 1, "inverted": 0},
+                "scaled_jacobian": {"min": 1, "p05": 1, "p50": 1, "inverted": 0}, "self_intersections": 0,
             },
+            "verdict": {"result": "poor" if reasons else "good", "reasons": reasons},
             "seconds": {"base": 0.1, "total": 0.1},
         })  # fmt: skip
 

@@ -170,6 +170,47 @@ def test_resume_does_only_what_is_not_done(command_line):
     assert "a.obj: done before" not in command_line.run(*command, "--seed", 2).out
 
 
+FAR, FEW = "far off (at 1, 2, 0.1)", "few, and fewer"
+
+
+def test_a_poor_result_is_said_and_is_no_failure(command_line):
+    for name in ("a.obj", "poor.obj", "b.obj"):
+        command_line.box(name)
+    run = command_line.run("remesh", "a.obj", "poor.obj", "b.obj", "--output", "out")
+    assert run.returncode == 0
+    assert run.err.splitlines() == [f"hybrid-mesh: poor.obj: poor: {text}" for text in (FAR, FEW)]
+    assert run.out.splitlines()[-1] == "3 inputs: 3 done, 0 failed; 1 poor result"
+    assert [(row["status"], row["verdict"], row["reasons"]) for row in rows(command_line)] == [
+        ("done", "good", ""), ("done", "poor", f"{FAR}; {FEW}"), ("done", "good", ""),
+    ]  # fmt: skip
+    verdict = report(command_line, "poor")["verdict"]
+    assert verdict["result"] == "poor" and [reason["what"] for reason in verdict["reasons"]] == ["hausdorff", "vertices"]
+    info = json.loads(command_line.run("info", "out/poor.hmesh").out)
+    assert info["verdict"] == verdict and json.loads(command_line.run("info", "out/a.hmesh").out)["verdict"]["result"] == "good"
+
+
+def test_strict_makes_a_poor_result_a_failure_with_its_files(command_line):
+    for name in ("a.obj", "poor.obj"):
+        command_line.box(name)
+    command = ("remesh", "a.obj", "poor.obj", "--output", "out", "--strict", "--export", "ply")
+    assert "poor" in " ".join(command_line.run("remesh", "--help").out.split("--strict")[-1].split()[:20])
+    for said in ("poor.obj: 26 vertices", "poor.obj: done before"):
+        run = command_line.run(*command, "--resume", "--levels", 1)
+        assert run.returncode == 1 and said in run.out
+        assert run.err.splitlines() == [f"hybrid-mesh: poor.obj: poor: {text}" for text in (FAR, FEW)]
+        assert run.out.splitlines()[-1] == "2 inputs: 1 done, 1 failed; 1 poor result"
+        row = rows(command_line)[1]
+        assert (row["status"], row["error"], row["vertices"], row["verdict"]) == ("failed", f"{FAR}; {FEW}", "26", "poor")
+        assert {"poor.hmesh", "poor.plan.json", "poor.ply", "poor.report.json"} <= set(command_line.outputs())
+    assert command_line.run("remesh", "a.obj", "--output", "out", "--strict").returncode == 0
+
+
+def test_a_hierarchy_made_in_another_way_has_no_verdict(command_line):
+    for metadata in ("", "no JSON", "[1]"):
+        (command_line.folder / "made.hmesh").write_text(json.dumps([[0, 0, 0], [1, 1, 1], 2, metadata]))
+        assert json.loads(command_line.run("info", "made.hmesh").out)["verdict"] is None
+
+
 def test_a_failed_input_is_done_again(command_line):
     command_line.box("refuse.obj")
     for _ in range(2):

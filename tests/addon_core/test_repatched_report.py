@@ -6,6 +6,7 @@ from hybrid_mesh.core import report as reports
 REPORT = {
     "levels": [{"level": j, "vertices": 8 * 4**j, "quads": 6 * 4**j, "l2": 0.1, "hausdorff": 0.2, "irregular_vertices": 8, "stretch": {}, "irregular_ops": []} for j in range(3)],
     "final": {"vertices": 98, "quads": 96, "l2": 0.1, "hausdorff": 0.2, "irregular_vertices": {"base": 8}, "scaled_jacobian": {"min": 0.5}},
+    "verdict": {"result": "poor", "reasons": [{"what": "hausdorff", "text": "far off"}]},
     "warnings": ["old"],
 }
 OPERATION = {"kind": "add_cubes", "level": 1, "quads": ["0.0"], "new_quads": [[0, 1, 2, 3]] * 5}
@@ -25,7 +26,7 @@ def test_what_was_not_measured_again_is_not_told():
     assert [(level["vertices"], level["quads"], level["l2"]) for level in made["levels"][1:]] == [(30, 28, None), (114, 112, None)]
     assert made["levels"][1]["irregular_ops"] == [{"kind": "add_cubes", "removed_quads": 1, "new_quads": 5}]
     assert (made["final"]["vertices"], made["final"]["l2"], made["final"]["scaled_jacobian"]) == (114, None, None)
-    assert made["warnings"] == []
+    assert made["warnings"] == [] and made["final"]["self_intersections"] is None and reports.verdict(made) == "" and reports.reasons(made) == []
     assert reports.quality(made)["scaled_jacobian_min"] is None and len(reports.level_table(made)) == 4
 
 

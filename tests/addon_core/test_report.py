@@ -29,6 +29,22 @@ def test_the_summary_repeats_warnings():
     assert report.summary_row("a", "a.ply", "done", {"final": {}})["warnings"] == ""
 
 
+POOR = {"result": "poor", "reasons": [{"what": "hausdorff", "text": "far off", "where": [1.0, -2.5, 1234567.0]}, {"what": "vertices", "text": "few"}]}
+
+
+def test_the_summary_has_the_verdict_and_its_reasons_with_their_places():
+    row = report.summary_row("a", "a.ply", "done", {"final": {}, "verdict": POOR})
+    assert row["verdict"] == "poor" and row["reasons"] == "far off (at 1, -2.5, 1.23457e+06); few"
+    row = report.summary_row("a", "a.ply", "done", {"final": {}, "verdict": {"result": "good", "reasons": []}})
+    assert (row["verdict"], row["reasons"]) == ("good", "")
+    assert report.summary_row("a", "a.ply", "failed", {"error": "no"})["verdict"] == ""
+
+
+def test_a_report_without_a_verdict_is_neither_good_nor_poor():
+    for made in ({}, {"verdict": None}):
+        assert report.verdict(made) == "" and report.reasons(made) == []
+
+
 def test_quality_of_a_report_without_figures():
     figures = report.quality({})
     assert figures["vertices"] is None and figures["irregular_vertices"] == 0
