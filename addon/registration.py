@@ -32,6 +32,7 @@ CLASSES = (
     remesh_operators.HYBRID_MESH_OT_remesh,
     remesh_operators.HYBRID_MESH_OT_preset,
     level_operators.HYBRID_MESH_OT_show_level,
+    level_operators.HYBRID_MESH_OT_show_reason,
     layout_operators.HYBRID_MESH_OT_draw_layout,
     layout_operators.HYBRID_MESH_OT_check_layout,
     layout_operators.HYBRID_MESH_OT_show_problem,

@@ -23,6 +23,7 @@ class Built:
     levels: list
     preview: bpy.types.Object
     blocks: list  # all data-blocks that were made, in order
+    matrix: numpy.ndarray  # object to world, when it was built
 
 
 def build(name, levels, matrix, scene, place=None, source=None, carry=None):
@@ -59,7 +60,7 @@ def build(name, levels, matrix, scene, place=None, source=None, carry=None):
     except BaseException:
         _remove(made)
         raise
-    return Built(collection, [level_name for level_name, _ in levels], objects, preview, made)
+    return Built(collection, [level_name for level_name, _ in levels], objects, preview, made, matrix)
 
 
 def remove(built):

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels draw, before and after a remesh, for a region of a level, and with a list of loops; the preview's level changes what the view shows."""
+"""The sidebar panels draw, before and after a remesh, with a poor result, for a region of a level, and with a list of loops; the preview's level changes what the view shows."""
 
+import json
 import os
 import sys
 
 import bpy
+from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import stepper  # noqa: E402
@@ -46,6 +48,18 @@ def steps():
         assert levels.level_of(preview) == level
         yield 2  # for a software renderer to draw it
         stepper.screenshot(f"panel_level{level}")
+    # A result that is poor at a corner of the object's box.
+    collection, place = preview.hybrid_mesh.hierarchy, Vector(preview.bound_box[6])
+    report = json.loads(collection.hybrid_mesh.report)
+    reasons = [{"what": "hausdorff", "text": "the mesh is up to 1.94e-01 of the diagonal away from the surface", "where": list(preview.matrix_world @ place)}]
+    collection.hybrid_mesh.report = json.dumps({**report, "verdict": {"result": "poor", "reasons": reasons}})
+    with bpy.context.temp_override(**stepper.view()):
+        assert bpy.ops.hybrid_mesh.show_reason("INVOKE_DEFAULT", True, index=0) == {"FINISHED"}
+    place, shown = Vector(reasons[0]["where"]), stepper.view()["space_data"].region_3d
+    assert (bpy.context.scene.cursor.location - place).length < 1e-3 and (shown.view_location - place).length < 1e-3
+    assert shown.view_distance < max(preview.dimensions)
+    yield 2
+    stepper.screenshot("panel_poor")
     level = levels_of(preview)[1]
     level.hide_set(False)
     bpy.context.view_layer.objects.active = level

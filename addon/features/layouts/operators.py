@@ -6,7 +6,7 @@ import mathutils
 from bpy.props import IntProperty
 
 from ... import compat
-from ...bridge import arrays, meshes, objects, strokes, transfer
+from ...bridge import arrays, meshes, objects, strokes, transfer, view
 from ...core import plans
 from ...core.native import native
 from ...core.tasks import Chain, Task
@@ -14,7 +14,7 @@ from ...jobs import NativeJobOperator
 from ..remesh.job import RemeshJobOperator, remesh_task, source_task
 from ..remesh.properties import CUBES, core_settings
 from ..topology import properties as topology_properties
-from . import drawing, problems, properties, view
+from . import drawing, problems, properties
 
 
 class _OnSurface:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import textwrap
-
 import bpy
 
+from ..wrapping import draw_wrapped
 from . import properties
 
 
@@ -69,11 +68,9 @@ class HYBRID_MESH_PT_layout(bpy.types.Panel):
         column.operator("hybrid_mesh.remesh_boundary", icon="MOD_REMESH").cubes = settings.cubes
 
     def _words(self, context, layout, problem):
-        """All that is said of a problem, in lines that fit the sidebar."""
+        """All that is said of a problem."""
         text = problem.message if problem.number < 0 else f"{problem.message} (stroke {problem.number + 1} of {problem.layer})"
-        column = layout.column(align=True)
-        for line in textwrap.wrap(text, max(12, int(context.region.width / (8 * context.preferences.system.ui_scale)))):
-            column.label(text=line)
+        draw_wrapped(context, layout, text)
 
     def _region(self, layout, values):
         properties.draw_region(layout.column(), values)

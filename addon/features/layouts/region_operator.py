@@ -5,13 +5,13 @@ import bpy
 import numpy
 from bpy.props import EnumProperty
 
-from ...bridge import objects
+from ...bridge import objects, view
 from ...core import plans
 from ...core import settings as core
 from ..levels import properties as hierarchy_properties
 from ..remesh.job import RemeshJobOperator, remesh_task
 from ..remesh.properties import core_settings
-from . import drawing, problems, properties, region_quads, region_update, view
+from . import drawing, problems, properties, region_quads, region_update
 
 _sources = []  # Blender keeps no reference to the texts of items that a function returns.
 

@@ -2,8 +2,11 @@
 import bpy
 from bpy.props import IntProperty
 
-from ...bridge import levels
-from .properties import hierarchy_of
+from ...bridge import levels, objects, view
+from ...core import report as reports
+from .properties import hierarchy_of, place_of, report_of
+
+_SHOWN = 0.02  # of a hierarchy's diagonal: what look_at() is to show
 
 
 class HYBRID_MESH_OT_show_level(bpy.types.Operator):
@@ -26,4 +29,34 @@ class HYBRID_MESH_OT_show_level(bpy.types.Operator):
             self.report({"ERROR"}, f"{preview.name} has no modifier {levels.PREVIEW_MODIFIER} any more")
             return {"CANCELLED"}
         levels.set_level(preview, self.level)
+        return {"FINISHED"}
+
+
+class HYBRID_MESH_OT_show_reason(bpy.types.Operator):
+    """Put the 3D cursor where the result is poor, and look at it"""
+
+    bl_idname = "hybrid_mesh.show_reason"
+    bl_label = "Show Reason"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    index: IntProperty(name="Reason", description="Of the verdict on the hierarchy, from 0 on", min=0, default=0)
+
+    @classmethod
+    def poll(cls, context):
+        return hierarchy_of(objects.active(context)) is not None
+
+    def execute(self, context):
+        collection = hierarchy_of(objects.active(context))
+        reasons = reports.reasons(report_of(collection))
+        if self.index >= len(reasons):
+            self.report({"ERROR"}, f"{collection.name}: there are {len(reasons)} reasons against the result, and no number {self.index}")
+            return {"CANCELLED"}
+        where = reasons[self.index].get("where")
+        if where is None:
+            self.report({"ERROR"}, f"This has no place: {reasons[self.index]['text']}")
+            return {"CANCELLED"}
+        context.scene.cursor.location = place = place_of(collection, where)
+        preview = collection.hybrid_mesh.preview
+        if preview is None or not view.look_at(context, preview, place, _SHOWN * objects.diagonal(preview)):
+            self.report({"INFO"}, "There is no 3D view to turn; the 3D cursor is at the place")
         return {"FINISHED"}

@@ -2,6 +2,8 @@
 import bpy
 
 from ...bridge import levels
+from ...core import report as reports
+from ..wrapping import draw_wrapped
 from . import properties
 
 
@@ -25,8 +27,20 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
         preview = collection.hybrid_mesh.preview
         if preview is not None:
             levels.draw_level(layout, preview)
+        self._verdict(context, layout, report)
         self._quality(layout, properties.quality_of(collection))
         self._levels(layout, report)
+
+    def _verdict(self, context, layout, report):
+        if reports.verdict(report) == "good":
+            layout.label(text="Good", icon="CHECKMARK")
+        for index, reason in enumerate(reports.reasons(report)):
+            box = layout.box()
+            row = box.row()
+            row.label(text="Poor", icon="ERROR")
+            if "where" in reason:
+                row.operator("hybrid_mesh.show_reason", text="", icon="VIEWZOOM", emboss=False).index = index
+            draw_wrapped(context, box, reason["text"])
 
     def _quality(self, layout, quality):
         column = layout.column(align=True)
@@ -58,6 +72,7 @@ def quality_lines(quality):
         ("Scaled Jacobian, 5 %", _plain(quality["scaled_jacobian_p05"])),
         ("Scaled Jacobian, median", _plain(quality["scaled_jacobian_p50"])),
         ("Inverted quads", _percent(quality["inverted"])),
+        ("Self-intersections", _count(quality["self_intersections"])),
     ]
     return [(label, text) for label, text in lines if text]
 

@@ -5,7 +5,8 @@ import functools
 import json
 
 import bpy
-from bpy.props import EnumProperty, PointerProperty, StringProperty
+import mathutils
+from bpy.props import EnumProperty, FloatVectorProperty, PointerProperty, StringProperty
 
 from ...bridge.names import with_suffix
 from ...core import plans
@@ -28,6 +29,10 @@ class HybridMeshCollection(bpy.types.PropertyGroup):
     source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed")
     preview: PointerProperty(name="Preview", type=bpy.types.Object, description="The object that shows one level at a time")
     report: StringProperty(name="Report", description="What was measured, as JSON")
+    matrix: FloatVectorProperty(
+        name="Matrix", description="Object to world when it was measured: the report's places are the world's", size=16, subtype="MATRIX",
+        default=[float(i % 5 == 0) for i in range(16)],
+    )  # fmt: skip
     operations: StringProperty(name="Operations", description="The irregular operations, as JSON: where they are and what quads they put there")
     token: StringProperty(name="Token", description="Names the native hierarchy while Blender runs", options={"HIDDEN"})
     plan: PointerProperty(name="Plan", type=bpy.types.Text, description="What was decided, as JSON; a remesh can be given it again")
@@ -39,6 +44,7 @@ def describe(built, source, report, plan="", operations=()):
     collection.source = source
     collection.preview = built.preview
     collection.report = json.dumps(report, ensure_ascii=False)
+    collection.matrix = [value for column in built.matrix.T for value in column]
     collection.operations = json.dumps(list(operations))
     if plan:
         collection.plan = bpy.data.texts.new(with_suffix(built.collection.name, " plan"))
@@ -66,6 +72,13 @@ def hierarchy_of(obj):
 def report_of(collection):
     """The report of a hierarchy as a dictionary; empty where there is none."""
     return _parsed(collection.hybrid_mesh.report)
+
+
+def place_of(collection, where):
+    """A place that a report names, in the world: it has gone where the hierarchy has gone since."""
+    matrix, preview = collection.hybrid_mesh.matrix, collection.hybrid_mesh.preview
+    place = mathutils.Vector(where)
+    return place if preview is None else preview.matrix_world @ (matrix.inverted_safe() @ place)
 
 
 def plan_of(collection):

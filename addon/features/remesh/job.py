@@ -7,6 +7,7 @@ import bpy
 
 from ...bridge import arrays, levels, meshes, objects, placement, transfer
 from ...core import loops
+from ...core import report as reports
 from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
@@ -59,8 +60,14 @@ class RemeshJobOperator(NativeJobOperator):
         for one in built:
             self.report({"INFO"}, _line(one))
         for task, result in results:
-            for warning in json.loads(result.report).get("warnings", []):
-                self.report({"WARNING"}, f"{task.name}: {warning}")
+            self._judge(task.name, json.loads(result.report), task.note[1].strict)
+
+    def _judge(self, name, report, strict):
+        """Says why a result is poor, which for strict settings is an error, and what else is worth knowing. It is there all the same."""
+        for warning in report.get("warnings", []):
+            self.report({"WARNING"}, f"{name}: {warning}")
+        for reason in reports.reasons(report):
+            self.report({"ERROR" if strict else "WARNING"}, f"{name}: poor: {reason['text']}")
 
     def hides_source(self, context):
         raise NotImplementedError

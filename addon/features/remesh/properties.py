@@ -82,7 +82,7 @@ class RemeshProperties:
         name="Remove Noise", description="Close handles and tunnels for good whose loop is shorter than this fraction of the bounding-box diagonal",
         default=0, min=0, max=_below(limits().end_of_remove_noise), soft_max=0.1, precision=4, step=0.1,
     )  # fmt: skip
-    strict: BoolProperty(name="Strict", description="Refuse a surface that needs repair instead of repairing it")
+    strict: BoolProperty(name="Strict", description="Refuse a surface that needs repair instead of repairing it, and take a poor result for an error")
     seed: IntProperty(name="Seed", description="Of what is arbitrary", default=1, min=0, max=_whole(limits().most_seed))
     threads: IntProperty(name="Threads", description="0 for all cores; never changes the result", default=0, min=0, max=limits().most_threads)
 

@@ -4,7 +4,7 @@
 import bpy
 import mathutils
 
-from ...bridge import objects
+from . import objects
 
 
 def to_object_mode(context):
@@ -20,18 +20,15 @@ def select_only(context, obj):
 
 
 def look_at(context, surface, place, size):
-    """Turns the 3D views of the window to a place, from outside the surface."""
-    if context.window is None:
-        return
+    """Turns the 3D views of the window to a place, from outside the surface; returns how many there are."""
+    views = [area for area in context.window.screen.areas if area.type == "VIEW_3D"] if context.window is not None else []
     inverse = surface.matrix_world.inverted_safe()
     try:
         found, _, normal, _ = surface.evaluated_get(context.evaluated_depsgraph_get()).closest_point_on_mesh(inverse @ place)
     except RuntimeError:  # It has no faces any more.
         found = False
     outward = (inverse.to_3x3().transposed() @ normal).normalized() if found else None
-    for area in context.window.screen.areas:
-        if area.type != "VIEW_3D":
-            continue
+    for area in views:
         view = area.spaces.active.region_3d
         if view.view_perspective == "CAMERA":
             view.view_perspective = "PERSP"
@@ -40,3 +37,4 @@ def look_at(context, surface, place, size):
             view.view_rotation = outward.to_track_quat("Z", "Y")
         view.view_location = place
         view.view_distance = 10 * size
+    return len(views)
