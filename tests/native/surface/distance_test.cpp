@@ -264,7 +264,7 @@ TEST(Distance, FindsWhatIsFarthestInsideABoundaryEdge) {
     for (const double end : {0.57, 0.9}) {
       PolygonSoup slivers;
       const auto add = [&](int side, double s, double t) {
-        const Vec3 a = corner[side], b = corner[(side + 1) % 3], p = a + s * (b - a), q = a + t * (b - a);
+        const Vec3 &a = corner[side], &b = corner[(side + 1) % 3], p = a + s * (b - a), q = a + t * (b - a);
         append(slivers, soup_of({p, q, (p + q) / 2 + 1e-3 * (centre - (p + q) / 2)}, {{0, 1, 2}}));
       };
       add(0, 0, begin), add(0, end, 1), add(1, 0, 1), add(2, 0, 1);

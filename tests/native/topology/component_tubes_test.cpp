@@ -41,7 +41,10 @@ TEST(ComponentTubes, OneComponentNeedsNone) { EXPECT_TRUE(tubes_of(repaired(ball
 TEST(ComponentTubes, JoinManyComponents) {
   PolygonSoup soup;
   constexpr int count = 200;
-  for (int i = 0; i < count; ++i) add(soup, ball(3, 2, Vec3(2.3 * (i % 15), 2.4 * (i / 15), 0.1 * (i % 7))));
+  for (int i = 0; i < count; ++i) {
+    const int row = i / 15;
+    add(soup, ball(3, 2, Vec3(2.3 * (i % 15), 2.4 * row, 0.1 * (i % 7))));
+  }
   const TriangleSurface s = repaired(soup);
   const auto tubes = tubes_of(s);
   EXPECT_EQ(tubes.size(), count - 1u);
