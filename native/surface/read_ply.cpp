@@ -8,22 +8,27 @@
 #include <vector>
 
 #include "surface/mesh_formats.h"
+#include "surface/soup_builder.h"
+#include "surface/text_encoding.h"
 #include "surface/text_scanner.h"
 
 namespace hybrid_mesh {
 
 namespace {
 
-enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 enum class Encoding { Ascii, LittleEndian, BigEndian };
 
 constexpr std::size_t size_of(Scalar type) {
-  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
+  constexpr std::array<std::size_t, 10> sizes{1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   return sizes[static_cast<std::size_t>(type)];
 }
 
+constexpr bool is_whole(Scalar type) { return type != Scalar::Float32 && type != Scalar::Float64; }
+
 std::optional<Scalar> scalar_named(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, Scalar>, 16> names{{{"char", Scalar::Int8},
+  // Those of 64 bits are in no specification, but some programs write them.
+  constexpr std::array<std::pair<std::string_view, Scalar>, 18> names{{{"char", Scalar::Int8},
                                                                        {"int8", Scalar::Int8},
                                                                        {"uchar", Scalar::UInt8},
                                                                        {"uint8", Scalar::UInt8},
@@ -35,6 +40,8 @@ std::optional<Scalar> scalar_named(std::string_view name) {
                                                                        {"int32", Scalar::Int32},
                                                                        {"uint", Scalar::UInt32},
                                                                        {"uint32", Scalar::UInt32},
+                                                                       {"int64", Scalar::Int64},
+                                                                       {"uint64", Scalar::UInt64},
                                                                        {"float", Scalar::Float32},
                                                                        {"float32", Scalar::Float32},
                                                                        {"double", Scalar::Float64},
@@ -47,6 +54,7 @@ std::optional<Scalar> scalar_named(std::string_view name) {
 enum class Role { Skipped, X, Y, Z, Corners };
 
 struct Property {
+  std::string_view name;
   Scalar type = Scalar::Int32;
   std::optional<Scalar> count_type;  // of a list
   Role role = Role::Skipped;
@@ -56,12 +64,35 @@ struct Element {
   std::string_view name;
   std::uint64_t count = 0;
   std::vector<Property> properties;
+
+  bool has_corners() const { return name == "face" || name == "tristrips"; }
 };
 
 struct Header {
   Encoding encoding = Encoding::Ascii;
   std::vector<Element> elements;
+  std::string_view stray;  // a line that was skipped although it is no comment
 };
+
+bool speaks_of_vertices(std::string_view name) { return name.find("vert") != name.npos || name.find("Vert") != name.npos; }
+
+// The list of a face's corners: of one of the two usual names, else the only list of whole numbers that speaks of vertices, else the only one there
+// is.
+Property* corners_of(Element& element) {
+  for (Property& property : element.properties)
+    if (property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index")) return &property;
+  const auto only = [&](const auto& fits) -> Property* {
+    Property* found = nullptr;
+    for (Property& property : element.properties)
+      if (property.count_type && is_whole(property.type) && fits(property.name)) {
+        if (found) return nullptr;
+        found = &property;
+      }
+    return found;
+  };
+  Property* named = only(speaks_of_vertices);
+  return named ? named : only([](std::string_view) { return true; });
+}
 
 // Lines end in LF, CR LF, or CR alone if the first line does; bytes follow the header, so that its end must be found exactly.
 class HeaderReader {
@@ -70,7 +101,7 @@ class HeaderReader {
 
   Header read() {
     const std::size_t first_end = bytes_.find_first_of("\r\n");
-    if (bytes_.substr(0, first_end) != "ply") refuse_file(name_, "not a PLY file");
+    if (keyword_of(bytes_.substr(0, first_end)) != "ply") refuse_file(name_, "not a PLY file");
     if (first_end != bytes_.npos && bytes_[first_end] == '\r' && bytes_.substr(first_end + 1, 1) != "\n") line_end_ = '\r';
     next_line();
     Header header;
@@ -88,76 +119,103 @@ class HeaderReader {
         Element element;
         element.name = words.token();
         std::int64_t count = -1;
-        if (!parse_integer(words.token(), count) || count < 0) refuse_file(name_, "bad header line " + quoted(line));
+        if (!parse_integer(words.token(), count) || count < 0) refuse_line(line);
         element.count = static_cast<std::uint64_t>(count);
         header.elements.push_back(element);
       } else if (keyword == "property") {
-        if (header.elements.empty()) refuse_file(name_, "bad header: a property before any element");
-        header.elements.back().properties.push_back(read_property(words, line, header.elements.back().name));
+        if (header.elements.empty()) refuse("bad header: a property before any element");
+        header.elements.back().properties.push_back(read_property(words, line));
       } else {
-        refuse_file(name_, "bad header line " + quoted(line));
+        header.stray = line;  // a comment may go on in lines that do not say so
       }
     }
     if (!has_format) refuse_file(name_, "bad header: no format line");
+    for (Element& element : header.elements) set_roles(element);
     return header;
   }
   std::size_t position() const { return position_; }
+  std::uint64_t lines() const { return lines_; }
 
  private:
   std::string_view next_line() {
     const std::size_t end = bytes_.find(line_end_, position_);
-    if (end == bytes_.npos) {
-      // An ASCII file without a body may lack the last line end.
-      if (bytes_.substr(position_) != "end_header") refuse_file(name_, "truncated: the header does not end");
-      const std::string_view line = bytes_.substr(position_);
-      position_ = bytes_.size();
-      return line;
-    }
-    std::string_view line = bytes_.substr(position_, end - position_);
-    position_ = end + 1;
+    std::string_view line = bytes_.substr(position_, end == bytes_.npos ? end : end - position_);
+    // An ASCII file without a body may lack the last line end.
+    if (end == bytes_.npos && keyword_of(line) != "end_header") refuse_file(name_, "truncated: the header does not end");
+    position_ = end == bytes_.npos ? bytes_.size() : end + 1;
+    ++lines_;
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return line;
   }
+
+  static std::string_view keyword_of(std::string_view line) { return TextScanner(line).token_in_line(); }
+
+  [[noreturn]] void refuse(const std::string& cause) const { refuse_file(name_, "line " + std::to_string(lines_) + ": " + cause); }
+  [[noreturn]] void refuse_line(std::string_view line) const { refuse("bad header line " + quoted(line)); }
 
   Encoding encoding_named(std::string_view word) const {
     if (word == "ascii") return Encoding::Ascii;
     if (word == "binary_little_endian") return Encoding::LittleEndian;
     if (word == "binary_big_endian") return Encoding::BigEndian;
-    refuse_file(name_, "unknown format " + quoted(word));
+    refuse("unknown format " + quoted(word));
   }
 
-  Property read_property(TextScanner& words, std::string_view line, std::string_view element) const {
+  Property read_property(TextScanner& words, std::string_view line) const {
     Property property;
     std::string_view type_name = words.token();
     if (type_name == "list") {
       property.count_type = scalar_named(words.token());
-      if (!property.count_type || *property.count_type == Scalar::Float32 || *property.count_type == Scalar::Float64)
-        refuse_file(name_, "bad header line " + quoted(line));
+      if (!property.count_type || !is_whole(*property.count_type)) refuse_line(line);
       type_name = words.token();
     }
     const std::optional<Scalar> type = scalar_named(type_name);
-    const std::string_view name = words.token();
-    if (!type || name.empty()) refuse_file(name_, "bad header line " + quoted(line));
+    property.name = words.token();
+    if (!type || property.name.empty()) refuse_line(line);
     property.type = *type;
-    if (element == "vertex" && !property.count_type)
-      property.role = name == "x" ? Role::X : name == "y" ? Role::Y : name == "z" ? Role::Z : Role::Skipped;
-    if ((element == "face" || element == "tristrips") && property.count_type && (name == "vertex_indices" || name == "vertex_index"))
-      property.role = Role::Corners;
     return property;
+  }
+
+  void set_roles(Element& element) const {
+    if (element.name == "vertex") {
+      for (Property& property : element.properties)
+        if (!property.count_type)
+          property.role = property.name == "x" ? Role::X : property.name == "y" ? Role::Y : property.name == "z" ? Role::Z : Role::Skipped;
+      for (const Role role : {Role::X, Role::Y, Role::Z})
+        if (element.count > 0 &&
+            std::none_of(element.properties.begin(), element.properties.end(), [&](const Property& p) { return p.role == role; }))
+          refuse_file(name_, "the element 'vertex' lacks the properties x, y and z");
+    } else if (element.has_corners()) {
+      if (Property* corners = corners_of(element))
+        corners->role = Role::Corners;
+      else if (element.count > 0)
+        refuse_file(name_, "the element " + quoted(element.name) + " lacks the property vertex_indices, and no other list is its corners for sure");
+    }
   }
 
   std::string_view bytes_;
   const std::string& name_;
   std::size_t position_ = 0;
+  std::uint64_t lines_ = 0;
   char line_end_ = '\n';
 };
 
-// The two kinds of body give values one by one and know how few bytes a value can take.
+// An index given as a floating-point number is odd, but exact if it is a whole number.
+std::int64_t index_from(double value) {
+  return value >= 0 && value < 4294967296.0 && value == static_cast<double>(static_cast<std::int64_t>(value)) ? static_cast<std::int64_t>(value) : -1;
+}
+
+// The two kinds of body give values one by one, and know how few bytes a value can take and where they are. Where there is no value complaint() says
+// what stands there instead; it is empty where the file ends.
 class BinaryBody {
  public:
-  BinaryBody(std::string_view bytes, bool swap) : at_(bytes.data()), end_(bytes.data() + bytes.size()), swap_(swap) {}
+  // header: how many bytes come before
+  BinaryBody(std::string_view bytes, std::size_t header, bool swap)
+      : begin_(bytes.data()), at_(begin_ + header), end_(begin_ + bytes.size()), swap_(swap) {}
 
+  FilePlace place() const { return {"byte", static_cast<std::uint64_t>(at_ - begin_)}; }
+  std::string complaint() const { return {}; }
   std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - at_); }
+  bool only_padding_left() { return is_padding({at_, left()}); }
   static std::uint64_t least_size(Scalar type) { return size_of(type); }
   // Whether `count` values fit in what is left.
   bool holds(std::uint64_t count, Scalar type) const { return left() / size_of(type) >= count; }
@@ -188,6 +246,12 @@ class BinaryBody {
       case Scalar::UInt32:
         value = static_cast<T>(take<std::uint32_t>());
         break;
+      case Scalar::Int64:
+        value = static_cast<T>(take<std::int64_t>());
+        break;
+      case Scalar::UInt64:
+        value = static_cast<T>(take<std::uint64_t>());
+        break;
       case Scalar::Float32:
         value = from_floating<T>(take<float>());
         break;
@@ -199,11 +263,10 @@ class BinaryBody {
   }
 
  private:
-  // An index given as a floating-point number is odd, but exact if it is a whole number.
   template <class T>
   static T from_floating(double value) {
     if constexpr (std::is_integral_v<T>)
-      return value >= 0 && value < 4294967296.0 && value == static_cast<double>(static_cast<std::int64_t>(value)) ? static_cast<T>(value) : T(-1);
+      return index_from(value);
     else
       return value;
   }
@@ -220,6 +283,7 @@ class BinaryBody {
     return value;
   }
 
+  const char* begin_;
   const char* at_;
   const char* end_;
   bool swap_;
@@ -227,46 +291,53 @@ class BinaryBody {
 
 class TextBody {
  public:
-  explicit TextBody(std::string_view bytes) : scanner_(bytes) {}
+  // header_lines: how many come before
+  TextBody(std::string_view bytes, std::uint64_t header_lines) : scanner_(bytes, '\0', header_lines + 1) {}
 
+  FilePlace place() const { return {"line", scanner_.line()}; }
+  std::string complaint() const { return last_.empty() ? "" : quoted(last_) + " is not a number that can be here"; }
   std::uint64_t left() const { return scanner_.rest().size() + 1; }
+  bool only_padding_left() { return is_padding(next()); }
   static std::uint64_t least_size(Scalar) { return 2; }  // a digit and a blank or the end of the file
   bool holds(std::uint64_t count, Scalar) const { return left() / 2 >= count; }
   bool skip(std::uint64_t count, Scalar) {
     for (; count > 0; --count)
-      if (scanner_.token().empty()) return false;
+      if (next().empty()) return false;
     return true;
   }
-  bool read(Scalar, double& value) { return parse_number(scanner_.token(), value); }
-  bool read(Scalar, std::int64_t& value) {
-    const std::string_view token = scanner_.token();
-    return parse_integer(token, value);
+  bool read(Scalar, double& value) { return parse_number(next(), value); }
+  bool read(Scalar type, std::int64_t& value) {
+    if (is_whole(type)) return parse_integer(next(), value);
+    double number = 0;
+    if (!parse_number(next(), number)) return false;
+    value = index_from(number);
+    return true;
   }
 
  private:
+  std::string_view next() { return last_ = scanner_.token(); }
+
   TextScanner scanner_;
+  std::string_view last_;
 };
 
 template <class Body>
 class BodyReader {
  public:
-  BodyReader(Body body, const std::string& name) : body_(body), polygons_(soup_), name_(name) {}
+  BodyReader(Body body, const Header& header, const std::string& name)
+      : body_(body), header_(header), soup_(name, [this] { return body_.place(); }), name_(name) {}
 
-  PolygonSoup read(const std::vector<Element>& elements) {
-    for (const Element& element : elements) {
+  PolygonSoup read() {
+    for (const Element& element : header_.elements) {
       check_count(element);
       if (element.properties.empty()) continue;
-      if (element.name == "vertex") {
-        require(element, {Role::X, Role::Y, Role::Z}, "x, y and z");
-        soup_.points.reserve(soup_.points.size() + element.count);
-      }
-      if (element.name == "face") {
-        require(element, {Role::Corners}, "vertex_indices");
-        soup_.offsets.reserve(soup_.offsets.size() + std::min(element.count, body_.left() / 4));
-      }
+      if (element.name == "vertex") soup_.reserve_points(element.count);
+      if (element.name == "face") soup_.reserve_polygons(std::min(element.count, body_.left() / 4));
       for (std::uint64_t i = 0; i < element.count; ++i) read_one(element, i);
     }
-    return std::move(soup_);
+    // With a count that is too small, or a line of the header that was none, surface would be lost or garbage.
+    if (!body_.only_padding_left()) refuse("the file goes on after all that its header promises");
+    return soup_.finish();
   }
 
  private:
@@ -277,16 +348,14 @@ class BodyReader {
       refuse_file(
           name_, "truncated: its header promises " + std::to_string(element.count) + " of " + quoted(element.name) + ", more than the file can hold");
   }
-  void require(const Element& element, std::initializer_list<Role> roles, const char* names) {
-    for (const Role role : roles) {
-      bool found = false;
-      for (const Property& property : element.properties) found = found || property.role == role;
-      if (!found && element.count > 0) refuse_file(name_, "the element " + quoted(element.name) + " lacks the properties " + names);
-    }
-  }
 
-  [[noreturn]] void fail(const Element& element, std::uint64_t i) {
-    refuse_file(name_, "truncated or damaged at " + quoted(element.name) + " " + std::to_string(i + 1) + " of " + std::to_string(element.count));
+  [[noreturn]] void refuse(const std::string& cause) const {
+    soup_.refuse(cause + (header_.stray.empty() ? "" : "; the line " + quoted(header_.stray) + " of the header was skipped"));
+  }
+  // cause: empty where the file ends
+  [[noreturn]] void fail(const Element& element, std::uint64_t i, const std::string& cause) const {
+    const std::string which = quoted(element.name) + " " + std::to_string(i + 1) + " of " + std::to_string(element.count);
+    refuse(cause.empty() ? "truncated: the file ends at " + which : "damaged at " + which + ": " + cause);
   }
 
   void read_one(const Element& element, std::uint64_t i) {
@@ -294,28 +363,30 @@ class BodyReader {
     for (const Property& property : element.properties) {
       if (property.count_type) {
         std::int64_t count = 0;
-        if (!body_.read(*property.count_type, count) || count < 0 || !body_.holds(static_cast<std::uint64_t>(count), property.type)) fail(element, i);
-        if (property.role == Role::Corners) {
-          if (!(element.name == "face" ? read_polygon(property.type, count) : read_strips(property.type, count))) fail(element, i);
-        } else if (!body_.skip(static_cast<std::uint64_t>(count), property.type)) {
-          fail(element, i);
-        }
-      } else if (property.role == Role::Skipped) {
-        if (!body_.skip(1, property.type)) fail(element, i);
-      } else if (!body_.read(property.type, point[static_cast<int>(property.role) - static_cast<int>(Role::X)])) {
-        fail(element, i);
+        if (!body_.read(*property.count_type, count)) fail(element, i, body_.complaint());
+        if (count < 0) fail(element, i, "a list of " + std::to_string(count));
+        if (!body_.holds(static_cast<std::uint64_t>(count), property.type))
+          fail(element, i, "a list of " + std::to_string(count) + ", more than the rest of the file can hold");
+        const bool read = property.role != Role::Corners ? body_.skip(static_cast<std::uint64_t>(count), property.type)
+                          : element.name == "face"       ? read_polygon(property.type, count)
+                                                         : read_strips(property.type, count);
+        if (!read) fail(element, i, body_.complaint());
+      } else if (!(property.role == Role::Skipped ? body_.skip(1, property.type) : body_.read(property.type, point[axis_of(property.role)]))) {
+        fail(element, i, body_.complaint());
       }
     }
-    if (element.name == "vertex") soup_.points.push_back(point);
+    if (element.name == "vertex") soup_.add_point(point);
   }
+
+  static int axis_of(Role role) { return static_cast<int>(role) - static_cast<int>(Role::X); }
 
   bool read_polygon(Scalar type, std::int64_t count) {
     for (; count > 0; --count) {
       std::int64_t index = 0;
       if (!body_.read(type, index)) return false;
-      polygons_.add_corner(to_index(index));
+      soup_.add_corner(index);
     }
-    polygons_.end_polygon();
+    soup_.end_polygon();
     return true;
   }
 
@@ -331,10 +402,10 @@ class BodyReader {
         turned = false;
         continue;
       }
-      if (index < 0) return false;
+      if (index < 0) soup_.add_corner(index);  // which refuses it, be it in a triangle or not
       if (last[0] >= 0) {
-        for (const std::int64_t corner : {last[turned ? 1 : 0], last[turned ? 0 : 1], index}) polygons_.add_corner(to_index(corner));
-        polygons_.end_polygon();
+        for (const std::int64_t corner : {last[turned ? 1 : 0], last[turned ? 0 : 1], index}) soup_.add_corner(corner);
+        soup_.end_polygon();
         turned = !turned;
       }
       last = {last[1], index};
@@ -343,20 +414,21 @@ class BodyReader {
   }
 
   Body body_;
-  PolygonSoup soup_;
-  PolygonCollector polygons_;
+  const Header& header_;
+  SoupBuilder soup_;
   const std::string& name_;
 };
 
 }  // namespace
 
 PolygonSoup read_ply(std::string_view bytes, const std::string& name) {
-  HeaderReader reader(bytes, name);
+  const DecodedText text(bytes);
+  HeaderReader reader(text.view(), name);
   const Header header = reader.read();
-  const std::string_view body = bytes.substr(reader.position());
-  if (header.encoding == Encoding::Ascii) return BodyReader<TextBody>(TextBody(body), name).read(header.elements);
+  if (header.encoding == Encoding::Ascii)
+    return BodyReader<TextBody>(TextBody(text.view().substr(reader.position()), reader.lines()), header, name).read();
   const bool swap = (header.encoding == Encoding::BigEndian) != (std::endian::native == std::endian::big);
-  return BodyReader<BinaryBody>(BinaryBody(body, swap), name).read(header.elements);
+  return BodyReader<BinaryBody>(BinaryBody(text.view(), reader.position(), swap), header, name).read();
 }
 
 }  // namespace hybrid_mesh

@@ -4,6 +4,8 @@
 
 #include "surface/coincident_points.h"
 #include "surface/mesh_formats.h"
+#include "surface/soup_builder.h"
+#include "surface/text_encoding.h"
 #include "surface/text_scanner.h"
 
 namespace hybrid_mesh {
@@ -25,83 +27,82 @@ bool equals(std::string_view token, std::string_view lower_case) {
 }
 
 // Binary files may begin with "solid" too: their size decides, then whether there are control characters, which every facet count has.
-bool is_text(std::string_view bytes) {
-  if (bytes.size() >= header_size && bytes.size() == header_size + facet_size * std::uint64_t{little_endian(bytes.data() + 80)}) return false;
-  for (const char c : bytes.substr(0, 1000))
-    if (c >= 0 && c < ' ' && !is_blank(c) && !is_line_end(c)) return false;
-  TextScanner scanner(bytes);
+bool has_size_of_binary(std::string_view bytes) {
+  return bytes.size() >= header_size && bytes.size() == header_size + facet_size * std::uint64_t{little_endian(bytes.data() + 80)};
+}
+bool is_text(std::string_view text) {
+  for (const char c : text.substr(0, 1000))
+    if (c >= 0 && c < ' ' && (c == '\0' || !is_padding({&c, 1}))) return false;
+  TextScanner scanner(text);
   return equals(scanner.token(), "solid");
 }
 
-PolygonSoup read_text(std::string_view bytes, const std::string& name) {
-  PolygonSoup soup;
-  PolygonCollector polygons(soup);
-  TextScanner scanner(bytes);
+PolygonSoup read_text(std::string_view text, const std::string& name) {
+  TextScanner scanner(text);
+  SoupBuilder soup(name, [&] { return FilePlace{"line", scanner.line()}; });
   bool in_solid = false, in_facet = false;
-  for (std::string_view token = scanner.token(); !token.empty(); token = scanner.token()) {
-    const auto refuse = [&](const std::string& cause) { refuse_file(name, "line " + std::to_string(scanner.line()) + ": " + cause); };
+  for (std::string_view token = scanner.token(); !is_padding(token); token = scanner.token()) {
     if (equals(token, "vertex")) {
-      if (!in_facet) refuse("a vertex outside a facet");
+      if (!in_facet) soup.refuse("a vertex outside a facet");
       Vec3 point;
       for (int i = 0; i < 3; ++i) {
         const std::string_view number = scanner.token_in_line();
-        if (number.empty()) refuse("a vertex needs three coordinates");
-        if (!parse_number(number, point[i])) refuse(quoted(number) + " is not a number");
+        if (number.empty()) soup.refuse("a vertex needs three coordinates");
+        if (!parse_number(number, point[i])) soup.refuse(quoted(number) + " is not a number");
       }
-      polygons.add_corner(to_index(static_cast<std::int64_t>(soup.points.size())));
-      soup.points.push_back(point);
+      soup.add_point(point);
+      soup.add_corner(static_cast<std::int64_t>(soup.point_count()) - 1);
     } else if (equals(token, "facet")) {
-      if (!in_solid || in_facet) refuse("a facet where none can be");
+      if (!in_solid || in_facet) soup.refuse("a facet where none can be");
       in_facet = true;
       scanner.next_line();  // the normal follows from the corners
     } else if (equals(token, "endfacet")) {
-      if (!in_facet) refuse("the end of a facet that has not begun");
+      if (!in_facet) soup.refuse("the end of a facet that has not begun");
       in_facet = false;
-      polygons.end_polygon();
+      soup.end_polygon();
     } else if (equals(token, "solid")) {
       in_solid = true;
       scanner.next_line();  // a name, of any words
     } else if (equals(token, "endsolid")) {
-      if (in_facet) refuse("a facet does not end");
+      if (in_facet) soup.refuse("a facet does not end");
       in_solid = false;
       scanner.next_line();
     } else if (equals(token, "outer") || equals(token, "loop") || equals(token, "endloop")) {
       continue;
     } else {
-      refuse(quoted(token) + " is no word of an STL file");
+      soup.refuse(quoted(token) + " is no word of an STL file");
     }
   }
-  if (in_solid) refuse_file(name, "truncated: the solid does not end");
-  return soup;
+  if (in_solid) soup.refuse("truncated: the solid does not end");
+  return soup.finish();
 }
 
 PolygonSoup read_binary(std::string_view bytes, const std::string& name) {
   if (bytes.size() < header_size) refuse_file(name, "truncated: too short for an STL file");
-  const std::uint64_t count = little_endian(bytes.data() + 80);
-  if ((bytes.size() - header_size) / facet_size < count)
-    refuse_file(name, "truncated: its header promises " + std::to_string(count) + " facets, more than the file holds");
-  PolygonSoup soup;
-  soup.points.reserve(3 * count);
-  PolygonCollector polygons(soup);
+  const std::uint64_t count = little_endian(bytes.data() + 80), held = (bytes.size() - header_size) / facet_size;
+  // Less than a facet may follow, or zeros that fill a block; more is surface that would be lost.
+  if (held < count || (held > count && !is_padding(bytes.substr(header_size + count * facet_size))))
+    refuse_file(name, (held < count ? "truncated: " : "damaged: ") + std::string("its header promises ") + std::to_string(count) +
+                          " facets, and there is room for " + std::to_string(held));
+  std::size_t at = header_size;
+  SoupBuilder soup(name, [&] { return FilePlace{"byte", at}; });
+  soup.reserve_points(3 * count);
+  soup.reserve_polygons(count);
   for (std::uint64_t f = 0; f < count; ++f) {
-    const char* at = bytes.data() + header_size + f * facet_size + 12;
+    at = header_size + f * facet_size + 12;
     for (int corner = 0; corner < 3; ++corner, at += 12) {
       Vec3 point;
-      for (int i = 0; i < 3; ++i) point[i] = std::bit_cast<float>(little_endian(at + 4 * i));
-      polygons.add_corner(to_index(static_cast<std::int64_t>(soup.points.size())));
-      soup.points.push_back(point);
+      for (int i = 0; i < 3; ++i) point[i] = std::bit_cast<float>(little_endian(bytes.data() + at + 4 * i));
+      soup.add_point(point);
+      soup.add_corner(static_cast<std::int64_t>(soup.point_count()) - 1);
     }
-    polygons.end_polygon();
+    soup.end_polygon();
   }
-  return soup;
+  return soup.finish();
 }
 
 // STL repeats a point for every facet that has it.
 void join_facets(PolygonSoup& soup) {
-  // What is refused later is left as it is; points that are not numbers equal no point.
-  if (soup.points.size() >= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) return;
-  for (const Vec3& point : soup.points)
-    if (!point.allFinite()) return;
   const std::vector<std::int32_t> first = first_coincident(soup.points);
   std::vector<std::int32_t> renamed(soup.points.size());
   std::int32_t kept = 0;
@@ -117,7 +118,8 @@ void join_facets(PolygonSoup& soup) {
 }  // namespace
 
 PolygonSoup read_stl(std::string_view bytes, const std::string& name) {
-  PolygonSoup soup = is_text(bytes) ? read_text(bytes, name) : read_binary(bytes, name);
+  const DecodedText text(has_size_of_binary(bytes) ? std::string_view() : bytes);
+  PolygonSoup soup = is_text(text.view()) ? read_text(text.view(), name) : read_binary(bytes, name);
   join_facets(soup);
   return soup;
 }

@@ -12,6 +12,13 @@ namespace hybrid_mesh {
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
+// What some programs leave behind the end of a file: blanks, line ends, zeros, and the sign for the end of a text.
+inline bool is_padding(std::string_view rest) {
+  for (const char c : rest)
+    if (!is_blank(c) && !is_line_end(c) && c != '\0' && c != '\x1a') return false;
+  return true;
+}
+
 // A number as text, independent of the locale. Infinite if too large, zero if too small for a double.
 inline bool parse_number(std::string_view token, double& value) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
@@ -35,11 +42,13 @@ inline bool parse_integer(std::string_view token, std::int64_t& value) {
 // Goes through text by tokens between blanks and line ends. Never reads past the end; an empty token says that there is none.
 class TextScanner {
  public:
-  explicit TextScanner(std::string_view text, char comment = '\0') : text_(text), comment_(comment) {}
+  // first_line: the number of the text's first line
+  explicit TextScanner(std::string_view text, char comment = '\0', std::uint64_t first_line = 1)
+      : text_(text), line_(first_line), comment_(comment) {}
 
   std::string_view rest() const { return text_.substr(position_); }
   std::size_t position() const { return position_; }
-  std::int64_t line() const { return line_; }
+  std::uint64_t line() const { return line_; }
 
   // The next token of this line.
   std::string_view token_in_line() {
@@ -71,7 +80,7 @@ class TextScanner {
  private:
   std::string_view text_;
   std::size_t position_ = 0;
-  std::int64_t line_ = 1;
+  std::uint64_t line_;
   char comment_;
 };
 

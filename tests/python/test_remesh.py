@@ -308,3 +308,28 @@ def test_an_operation_is_copied_to_another_region():
     for wrong in (-1, 1):
         with pytest.raises(_native.InvalidInput, match=f"no operation {wrong}"):
             first.operation(wrong)
+
+
+def write_stl(path, points, triangles):
+    """As text, whose numbers are exact."""
+    facets = "".join(
+        "facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(map(float, points[corner])) for corner in triangle) + "endloop\nendfacet\n"
+        for triangle in triangles
+    )
+    path.write_text(f"solid a part\n{facets}endsolid a part\n")
+
+
+@pytest.mark.parametrize("scale, shift", [(1e-3, 0), (1e3, 0), (1, 1e6), (1e-3, 1e6)])
+def test_the_unit_and_the_place_of_a_part_do_not_matter(tmp_path, result, scale, shift):
+    points, _, indices = torus()
+    write_stl(tmp_path / "part.stl", scale * points + [shift, -shift, shift], indices.reshape(-1, 3))
+    moved = _native.remesh(*_native.read_mesh(str(tmp_path / "part.stl")), SETTINGS)
+    report, expected = json.loads(moved.report), json.loads(result.report)
+    assert report["input"]["repaired"] == expected["input"]["repaired"] and report["warnings"] == expected["warnings"]
+    for key in ("vertices", "quads", "genus", "components", "boundary_loops"):
+        assert report["final"][key] == expected["final"][key]
+    for key in ("l2", "hausdorff"):
+        assert report["final"][key] == pytest.approx(expected["final"][key], rel=0.5)
+    made = moved.final_mesh()["points"]
+    for end in (np.min, np.max):
+        assert (end(made, axis=0) - [shift, -shift, shift]) / scale == pytest.approx(end(points, axis=0), abs=0.05)
