@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The jobs of core/worker.py that need Blender: .blend files as inputs and as outputs of the command line."""
+"""The jobs of core/worker.py that need Blender: scenes as inputs and .blend files as outputs of the command line."""
 
 import json
 
@@ -10,7 +10,7 @@ from .features.levels import properties
 
 
 def extract(job):
-    """Every mesh object of a .blend as arrays in a folder."""
+    """Every mesh object of a scene's file as arrays in a folder."""
     worker.refuse_unreadable(job["path"])
     return {"objects": blend_files.extract(job["path"], job["folder"])}
 

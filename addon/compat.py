@@ -2,6 +2,7 @@
 """Differences between Blender versions: the only module that asks which one this is."""
 
 import bpy
+import numpy
 
 HAS_COMMAND_LINE = bpy.app.version >= (4, 2, 0)
 _HAS_NODE_INTERFACE = bpy.app.version >= (4, 0, 0)
@@ -53,6 +54,12 @@ def draw_on_surfaces(tool_settings, data):
         tool_settings.gpencil_surface_offset = 0
     if hasattr(data, "zdepth_offset"):
         data.zdepth_offset = 0
+
+
+def give_numpy_its_old_names():
+    """For importers that are older than the numpy they run with, as a distribution may have them: glTF's of 3.4 with numpy 1.24."""
+    if "bool" not in vars(numpy):  # Asking for it would warn.
+        numpy.bool = bool
 
 
 def register_command_line(name, function):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from . import inputs as input_files
 from . import report as reports
 from .native import explain
-from .process import Processes, WorkerFailed
+from .process import Processes, WorkerFailed, bpy_available
 from .settings import RemeshSettings
 from .version import VERSION
 from .worker import write_text
@@ -54,7 +54,8 @@ class Batch:
             raise OutputError(f"cannot write to {folder}: {error.strerror or error}") from error
         try:
             items = self._expand(paths)
-            input_files.refuse_clashes(items, self.options.outputs, folder)
+            for item in input_files.name_apart(items, self.options.outputs, folder):
+                self.show(f"{item.label}: another input has this name, its outputs are called {item.name}")
             failed = self._run_all(items)
             try:
                 self._write_summary()
@@ -79,26 +80,25 @@ class Batch:
 
     def _expand(self, paths):
         items = []
-        for number, path in enumerate(paths):
-            if input_files.is_blend(path) and not os.path.isdir(path):
-                items += self._objects(path, number)
+        for number, item in enumerate(input_files.expand(paths, self.options.folder, self.fail)):
+            if item.error or not input_files.is_scene(item.path):
+                items.append(item)
+            elif bpy_available():
+                items += self._objects(item.path, number)
             else:
-                items.append(input_files.file_input(path))
+                items.append(input_files.failed_input(item.path, input_files.needs_blender(item.path)))
         return items
 
     def _objects(self, path, number):
         folder = os.path.join(self._staging, f"objects{number}")
-        failed = input_files.Input(path, os.path.splitext(os.path.basename(path))[0])
         try:
             os.mkdir(folder)
             job = {"kind": "extract", "path": path, "folder": folder}
             found = self.processes.run(job, self.options.timeout, needs_bpy=True)["objects"]
         except (WorkerFailed, OSError) as error:
-            failed.error = explain(error, path)
-            return [failed]
+            return [input_files.failed_input(path, explain(error, path))]
         if not found:
-            failed.error = "holds no mesh object"
-            return [failed]
+            return [input_files.failed_input(path, "holds no mesh object")]
         items = []
         for entry in found:
             item = input_files.object_input(path, entry["name"], entry.get("arrays", ""))

@@ -100,8 +100,8 @@ def remesh(arguments):
     outputs = input_files.Outputs(exports=arguments.export, repaired=arguments.export_repaired, blend=arguments.blend, levels=arguments.export_levels)
     if not bpy_available():
         for path in arguments.inputs:
-            if input_files.is_blend(path):
-                raise WrongArguments(f"{path}: a .blend can be read inside Blender only; this is Python without Blender")
+            if input_files.is_scene(path) and not os.path.isdir(path):
+                raise WrongArguments(f"{path}: {input_files.needs_blender(path)}")
         if outputs.blend:
             raise WrongArguments("--blend needs Blender; this is Python without Blender")
     options = BatchOptions(arguments.output, settings, outputs, arguments.jobs, arguments.timeout, arguments.resume)
@@ -172,8 +172,8 @@ def _parser():
 
     command = commands.add_parser("remesh", help="a quad hierarchy of every input", allow_abbrev=False)
     command.set_defaults(command=remesh)
-    command.add_argument("inputs", nargs="+", metavar="INPUT", help=".ply, .obj, .off, .stl; in Blender also .blend (each mesh object is an input)")
-    command.add_argument("--output", required=True, metavar="DIR", help="folder for NAME.hmesh, NAME.plan.json, NAME.report.json and summary.csv")
+    command.add_argument("inputs", nargs="+", metavar="INPUT", help=f"{', '.join(input_files.MESH_EXTENSIONS)}; in Blender also {', '.join(input_files.SCENE_EXTENSIONS)} (each mesh object is an input); or a folder with such files")
+    command.add_argument("--output", required=True, metavar="DIR", help="folder for NAME.hmesh, NAME.plan.json, NAME.report.json and summary.csv; of inputs of one name the second one, by path, is NAME-2")
     bounds = command.add_argument_group("bounds", "without any, the remesh has as many vertices as the input")
     bounds.add_argument("--vertices", type=_whole(1), metavar="N", help="hard upper bound on the final mesh's vertices")
     bounds.add_argument("--error", type=_positive, metavar="E", help="stop at this L2 distance, a fraction of the bounding-box diagonal")

@@ -92,6 +92,44 @@ def test_one_bad_input_leaves_the_others_done(command_line):
     assert not [name for name in made if name.startswith(".")]
 
 
+def test_a_folder_of_meshes(command_line):
+    scans = command_line.folder / "scans"
+    (scans / "deep").mkdir(parents=True)
+    for name in ("b.obj", "a.obj", "deep/c.obj"):
+        command_line.box(f"scans/{name}")
+    run = command_line.run("remesh", "scans", "--output", "scans/out")
+    assert (run.returncode, run.err) == (0, "hybrid-mesh: scans: skipped, no mesh files: deep/\n")
+    assert [row["input"] for row in rows(command_line, "scans/out")] == ["scans/a.obj", "scans/b.obj"]
+    (scans / "notes.txt").write_text("x")
+    again = command_line.run("remesh", "scans/", "scans/a.obj", "--output", "scans/out", "--resume")
+    assert again.returncode == 0 and again.out.count("skipped") == 2 and again.err.count("\n") == 1 and "notes.txt" in again.err
+    (scans / "refuse.obj").write_text("x")
+    (scans / "scene.fbx").write_text("x")
+    bad = command_line.run("remesh", "scans", "--output", "scans/out", "--resume")
+    assert bad.returncode == 1 and bad.out.count("skipped") == 2
+    assert [line.split(": ", 2)[1] for line in bad.err.splitlines()] == ["scans", "scans/refuse.obj", "scans/scene.fbx"] and "Blender" in bad.err
+    empty = command_line.run("remesh", "scans/deep/..", "scans/out", "--output", "other")
+    assert empty.returncode == 1 and "hybrid-mesh: scans/out: is a folder without a mesh file" in empty.err
+    assert [row["status"] for row in rows(command_line, "other")] == ["done", "done", "failed", "failed", "failed"]
+
+
+def test_inputs_of_one_name_get_names_of_their_own(command_line):
+    for folder in ("x", "y"):
+        (command_line.folder / folder).mkdir()
+        command_line.box(f"{folder}/a.obj")
+    (command_line.folder / "y" / "a.obj").write_text((command_line.folder / "y" / "a.obj").read_text().replace("v 0 0 0", "v 0 0 -1"))
+    made = {}
+    for order in (("x/a.obj", "y"), ("y/a.obj", "x/a.obj", "y")):
+        run = command_line.run("remesh", *order, "--output", "out", "--export", "obj")
+        assert (run.returncode, run.err) == (0, "") and "y/a.obj: another input has this name, its outputs are called a-2" in run.out
+        assert {row["input"]: row["name"] for row in rows(command_line)} == {"x/a.obj": "a", "y/a.obj": "a-2"}
+        files = {name: (command_line.folder / "out" / name).read_bytes() for name in ("a.obj", "a-2.obj", "a.hmesh", "a-2.hmesh")}
+        assert not made or files == made
+        made = files
+    assert made["a.obj"] != made["a-2.obj"]
+    assert command_line.run("remesh", "y", "x", "--output", "out", "--export", "obj", "--resume").out.count("done before") == 2
+
+
 @pytest.mark.parametrize(
     "arguments, said",
     [
@@ -121,9 +159,11 @@ def test_one_bad_input_leaves_the_others_done(command_line):
         (("remesh", "box.obj", "--output", "out", "--timeout", "-1"), "--timeout"),
         (("remesh", "box.obj", "--output", "out", "--drop-components", "1"), "--drop-components"),
         (("remesh", "box.obj", "--output", "out", "--vert", "5"), "--vert"),
-        (("remesh", "box.obj", "box.obj", "--output", "out"), "one name"),
         (("remesh", "box.obj", "--output", ".", "--export", "obj"), "overwritten"),
         (("remesh", "scene.blend", "--output", "out"), "Blender"),
+        (("remesh", "box.obj", "scene.GLB", "--output", "out"), "scene.GLB: a .glb can be read inside Blender only"),
+        (("remesh", "scene.gltf", "--output", "out"), "Blender"),
+        (("remesh", "scene.fbx", "--output", "out"), "Blender"),
         (("remesh", "box.obj", "--output", "out", "--blend"), "Blender"),
         (("compare", "box.obj"), "B"),
         (("info",), "FILE"),
