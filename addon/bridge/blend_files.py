@@ -13,7 +13,6 @@ from ..core.native import native
 from . import levels, meshes
 from .arrays import MatrixError
 
-
 # By extension the operators that import such files, the best first, and for each the add-on that it comes with, if it is not Blender's own.
 IMPORTERS = {
     ".glb": (("import_scene", "gltf", "io_scene_gltf2"),),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "base/error.h"
 #include "shapes.h"
@@ -73,6 +74,24 @@ TEST(PolygonSoup, TruncatedFilesReadOrThrow) {
       EXPECT_EQ(accepted, 1u);
     }
   }
+}
+
+// What the fuzzers start from is what is odd in real files.
+TEST(PolygonSoup, EveryPrefixOfAnOddFileReadsOrThrows) {
+  const fs::path seeds = fs::path(HYBRID_MESH_CHECKOUT) / "tests/native/fuzz/seeds";
+  int read = 0;
+  for (const auto& [format, name] :
+       {std::pair(MeshFormat::Ply, "ply"), std::pair(MeshFormat::Obj, "obj"), std::pair(MeshFormat::Off, "off"), std::pair(MeshFormat::Stl, "stl")})
+    for (const auto& entry : fs::directory_iterator(seeds / ("read_" + std::string(name) + "_fuzz"))) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+      ASSERT_FALSE(bytes.empty()) << entry.path();
+      for (std::size_t n = 0; n < bytes.size(); ++n) message(bytes.substr(0, n), format);
+      const std::string whole = message(bytes, format);
+      EXPECT_TRUE(whole.empty() || whole.find("four coordinates") != whole.npos) << entry.path() << ": " << whole;
+      ++read;
+    }
+  EXPECT_GT(read, 15);
 }
 
 TEST(PolygonSoup, DamagedFilesReadOrThrow) {
