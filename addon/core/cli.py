@@ -17,7 +17,7 @@ from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
 LATER_COMMANDS = ("encode", "decode", "bench")
-LATER_OPTIONS = ("--symmetry", "--features")
+LATER_OPTIONS = ("--symmetry",)
 PROGRAM = "hybrid-mesh"
 
 
@@ -87,6 +87,7 @@ def _settings(arguments):
         remove_noise=arguments.remove_noise,
         stretch_threshold=arguments.stretch,
         semi_regular=arguments.semi_regular,
+        features=arguments.features,
         drop_components=arguments.drop_components,
         strict=arguments.strict,
         plan=_read_plan(arguments.plan) if arguments.plan else "",
@@ -187,6 +188,10 @@ def _parser():
         help="handles, tunnels and boundaries open on finer levels (late) or in the base; default auto: late with a minimal base",
     )  # fmt: skip
     shape.add_argument("--components", choices=COMPONENTS, default="apart", help="joined: one base for all, late topology parts them (default apart)")
+    shape.add_argument(
+        "--features", type=_features, default="auto", metavar="auto|DEG|none",
+        help="sharp edges that are kept: auto, where flat or smooth faces meet at them (default); all from an angle in degrees on; or none",
+    )
     shape.add_argument("--stretch", type=float, default=4.0, metavar="X", help="grow skin where the map is stretched more than this (default 4)")
     shape.add_argument("--plan", metavar="FILE.json", help="take base quads and irregular operations from a plan, as NAME.plan.json of another remesh")
     shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
@@ -247,6 +252,15 @@ def _positive(text):
     if not 0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"must be a number above 0, not {text!r}")
     return value
+
+
+def _features(text):
+    if text in ("auto", "none"):
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"auto, none or an angle in degrees, not {text!r}") from None
 
 
 def _base(text):

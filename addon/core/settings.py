@@ -10,6 +10,7 @@ from .limits import limits
 REFINEMENTS = ("uniform", "adaptive")
 FACES = ("quads", "transition", "triangles")
 BASES = ("auto", "min")
+FEATURES = ("auto", "none")
 TOPOLOGIES = ("auto", "late", "base")
 COMPONENTS = ("apart", "joined")
 
@@ -26,6 +27,7 @@ OPTION_NAMES = {
     "remove_noise": "--remove-noise",
     "stretch_threshold": "--stretch",
     "semi_regular": "--semi-regular",
+    "features": "--features",
     "drop_components": "--drop-components",
     "strict": "--strict",
     "plan": "--plan",
@@ -51,6 +53,7 @@ class RemeshSettings:
     remove_noise: float = 0.0  # handles and tunnels with shorter loops, as a fraction of the bounding-box diagonal, are closed for good
     stretch_threshold: float = 4.0  # above it irregular operations grow skin
     semi_regular: bool = False  # no irregular operations
+    features: object = "auto"  # sharp edges: "auto" where flat or smooth faces meet at them, "none", or the angle in degrees from which they are kept
     drop_components: float = 0.0  # components below this fraction of the area are removed
     strict: bool = False  # refuse input that needs repair; a poor result is an error
     plan: str = ""  # JSON text of a plan (see core/plans.py) that decides base and irregular operations; empty: they are searched for
@@ -75,6 +78,11 @@ class RemeshSettings:
         _fraction("remove_noise", self.remove_noise, bounds.end_of_remove_noise, "the bounding-box diagonal")
         least, most = bounds.least_stretch_threshold, bounds.most_stretch_threshold
         _number("stretch_threshold", self.stretch_threshold, lambda value: least <= value <= most, f"from {least:.7g} to {most:.7g}")
+        if isinstance(self.features, str):
+            _choice("features", self.features, FEATURES)
+        else:
+            least, most = bounds.least_feature_angle, bounds.most_feature_angle
+            _number("features", self.features, lambda value: least <= value <= most, f"auto, none or from {least:g} to {most:g} degrees")
         _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")
         if not isinstance(self.plan, str):
             raise SettingsError("--plan must be a plan's text")

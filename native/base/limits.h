@@ -25,6 +25,10 @@ inline constexpr int most_base_quads = 10000000;
 inline constexpr double least_stretch_threshold = 1;
 inline constexpr double most_stretch_threshold = 1e6;
 
+// Degrees between the normals of two faces: below, the triangles of every curved face would count.
+inline constexpr double least_feature_angle = 5;
+inline constexpr double most_feature_angle = 175;
+
 // Reports and plans hold it as JSON, whose numbers are exact up to here wherever they are read; bases that are tried one after another count on from
 // it.
 inline constexpr std::int64_t most_seed = (std::int64_t{1} << 53) - 1;

@@ -18,6 +18,8 @@ py::dict all_limits() {
   all["most_base_quads"] = limits::most_base_quads;
   all["least_stretch_threshold"] = limits::least_stretch_threshold;
   all["most_stretch_threshold"] = limits::most_stretch_threshold;
+  all["least_feature_angle"] = limits::least_feature_angle;
+  all["most_feature_angle"] = limits::most_feature_angle;
   all["most_seed"] = limits::most_seed;
   all["most_threads"] = limits::most_threads;
   all["most_cubes"] = limits::most_cubes;

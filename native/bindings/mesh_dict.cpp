@@ -171,6 +171,11 @@ py::dict to_dict(const AnnotatedMesh& annotated) {
   result["root"] = to_array(annotated.root);
   result["path"] = to_array(annotated.path);
   result["irregular"] = irregular;
+  if (!annotated.mesh.sharp.empty()) {
+    py::array_t<bool> sharp(static_cast<py::ssize_t>(annotated.mesh.sharp.size()));
+    std::copy(annotated.mesh.sharp.begin(), annotated.mesh.sharp.end(), sharp.mutable_data());
+    result["sharp"] = sharp;
+  }
   if (!annotated.opened.empty()) {
     result["opened"] = to_array(annotated.opened);
     result["opened_level"] = to_array(annotated.opened_level);

@@ -101,6 +101,15 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
       options.faces = FaceClosure::Triangles;
     else
       setting.refuse("'quads', 'transition' or 'triangles'");
+  } else if (key == "features") {
+    if (setting.is("auto")) {
+      options.features = Features::Auto;
+    } else if (setting.is("none")) {
+      options.features = Features::None;
+    } else {
+      options.features = Features::Given;
+      options.feature_angle = setting.number(limits::least_feature_angle, limits::most_feature_angle);
+    }
   } else if (key == "base") {
     if (setting.is("auto")) {
       options.base = BaseSize::Auto;

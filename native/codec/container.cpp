@@ -106,20 +106,24 @@ Vec3 read_point(Reader& in) {
   return p;
 }
 
+// Beside the closure: a byte for each base quad follows the quads, see HierarchyParts::sharp.
+constexpr std::uint32_t kHasSharpSides = 1u << 8;
+
 void write_base(Writer& out, const HierarchyParts& parts) {
   out.i32(parts.base_vertices);
-  out.u32(static_cast<std::uint32_t>(parts.closure));
+  out.u32(static_cast<std::uint32_t>(parts.closure) | (parts.sharp.empty() ? 0 : kHasSharpSides));
   out.u64(parts.base_quads.size());
   for (std::size_t q = 0; q < parts.base_quads.size(); ++q)
     for (int s = 0; s < 4; ++s) {
       out.i32(parts.base_quads[q][s]);
       out.i32(parts.base_links[q][s].valid() ? 4 * parts.base_links[q][s].node + parts.base_links[q][s].side : -1);
     }
+  for (const std::uint8_t sides : parts.sharp) out.u8(sides);
 }
 
 void read_base(Reader& in, HierarchyParts& parts) {
   parts.base_vertices = in.i32();
-  const std::uint32_t closure = in.u32();
+  const std::uint32_t flags = in.u32(), closure = flags & ~kHasSharpSides;
   if (closure > static_cast<std::uint32_t>(FaceClosure::Triangles)) corrupt("a closure of no known kind");
   parts.closure = static_cast<FaceClosure>(closure);
   const std::size_t n = in.count(32);
@@ -132,6 +136,10 @@ void read_base(Reader& in, HierarchyParts& parts) {
       if (link < -1) corrupt("a neighbour out of range");
       if (link >= 0) parts.base_links[q][s] = {link / 4, link % 4};
     }
+  for (std::size_t q = 0; q < n && (flags & kHasSharpSides); ++q) {
+    parts.sharp.push_back(in.u8());
+    if (parts.sharp.back() > 15) corrupt("a sharp side that no quad has");
+  }
 }
 
 void write_tree(Writer& out, const HierarchyParts& parts) {

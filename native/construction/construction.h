@@ -28,6 +28,7 @@ class Construction {
   const SurfaceVersion& surface() const { return surface_; }
 
   void apply(MappedEdit mapped);
+  void set_sharp(int base_quad, int side) { mesh_.set_sharp(base_quad, side); }
   // Gives a quad of the level a map of its own.
   void set_map(int patch, PatchMap map);
 

@@ -58,10 +58,26 @@ class HierarchyArchive {
     return links;
   }
 
+  static std::vector<std::uint8_t> sharp_sides(const HybridMesh& mesh) {
+    std::vector<std::uint8_t> sharp;
+    if (!mesh.has_sharp_sides()) return sharp;
+    sharp.resize(mesh.base_count_, 0);
+    for (int q = 0; q < mesh.base_count_; ++q)
+      for (int s = 0; s < 4; ++s) sharp[q] |= static_cast<std::uint8_t>(mesh.is_sharp(q, s) << s);
+    return sharp;
+  }
+
+  static void set_sharp(HybridMesh& mesh, const std::vector<std::uint8_t>& sharp) {
+    for (std::size_t q = 0; q < sharp.size(); ++q)
+      for (int s = 0; s < 4; ++s)
+        if ((sharp[q] >> s) & 1) mesh.set_sharp(static_cast<int>(q), s);
+  }
+
   static HybridMesh canonical(const HybridMesh& old) {
     HybridMesh mesh;
     if (old.node_count() == 0) return mesh;
     mesh = HybridMesh::from_base(old.base_vertices_, base_quads(old), base_links(old));
+    set_sharp(mesh, sharp_sides(old));
     std::vector<int> order(old.operations_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return old.operations_[a].repatch.level < old.operations_[b].repatch.level; });
@@ -135,6 +151,7 @@ class HierarchyArchive {
     parts.base_vertices = mesh.base_vertices_;
     parts.base_quads = base_quads(mesh);
     parts.base_links = base_links(mesh);
+    parts.sharp = sharp_sides(mesh);
     for (const auto& node : mesh.nodes_) parts.refined.push_back(node.child >= 0);
     for (const auto& op : mesh.operations_) {
       parts.operations.push_back(op.repatch);
@@ -187,6 +204,8 @@ class HierarchyArchive {
     if (parts.base_vertices < 0 || static_cast<std::size_t>(parts.base_vertices) > 4 * parts.base_quads.size())
       refuse("a number of base vertices out of range");
     HybridMesh mesh = HybridMesh::from_base(parts.base_vertices, parts.base_quads, parts.base_links);
+    if (!parts.sharp.empty() && parts.sharp.size() != parts.base_quads.size()) refuse("sharp sides and base quads differ in number");
+    set_sharp(mesh, parts.sharp);
     if (parts.enabled.size() != parts.operations.size()) refuse("operations and choices differ in number");
     for (std::size_t o = 1; o < parts.operations.size(); ++o)
       if (parts.operations[o].level < parts.operations[o - 1].level) refuse("operations out of order");

@@ -15,6 +15,7 @@ struct HierarchyParts {
   int base_vertices = 0;
   std::vector<std::array<int, 4>> base_quads;
   std::vector<std::array<SideLink, 4>> base_links;
+  std::vector<std::uint8_t> sharp;    // per base quad, a bit a side: it is on a feature. Empty: none is
   std::vector<std::uint8_t> refined;  // per node: 1 if it has children
   std::vector<Repatch> operations;    // by level, `sides` complete
   std::vector<bool> enabled;          // per operation

@@ -18,7 +18,11 @@ HybridMesh base_of(const HybridMesh& mesh) {
       quads[q][i] = static_cast<int>(mesh.corner(q, i).index());
       links[q][i] = mesh.root_neighbour(q, i);
     }
-  return HybridMesh::from_base(mesh.base_vertex_count(), quads, links);
+  HybridMesh base = HybridMesh::from_base(mesh.base_vertex_count(), quads, links);
+  for (int q = 0; q < mesh.base_count(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (mesh.is_sharp(q, i)) base.set_sharp(q, i);
+  return base;
 }
 
 class Coarsening {

@@ -163,7 +163,9 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
     mesh.node.push_back(node);
     mesh.root.push_back(nodes_[node].root);
   };
+  const bool sharp = has_sharp_sides();
   std::vector<int> loop, middles;
+  std::vector<char> sharp_side;
   for (std::size_t f = 0; f < polygons.faces.size(); ++f) {
     const auto& face = polygons.faces[f];
     const int begin = polygons.offsets[f], count = polygons.offsets[f + 1] - begin;
@@ -172,6 +174,8 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
       const auto& corner = polygons.corners[begin + i];
       loop.push_back(vertex(corner.vertex, face.owner, corner.u, corner.v));
     }
+    sharp_side.clear();
+    for (int i = 0; i < count; ++i) sharp_side.push_back(edges_[polygons.corners[begin + i].half >> 1].sharp);
     if (split) {
       middles.clear();
       for (int i = 0; i < count; ++i) {
@@ -182,6 +186,7 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
       const int centre = vertex(VertexId(VertexId::Kind::Node, face.node), face.owner, face.square.u + w, face.square.v + w);
       for (int i = 0; i < count; ++i) {
         mesh.indices.insert(mesh.indices.end(), {loop[i], middles[i], centre, middles[(i + count - 1) % count]});
+        if (sharp) mesh.sharp.insert(mesh.sharp.end(), {sharp_side[i], 0, 0, sharp_side[(i + count - 1) % count]});
         end_face(face.node);
       }
       continue;
@@ -195,13 +200,17 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
       if (hanging) apex = i;
     }
     std::rotate(loop.begin(), loop.begin() + apex, loop.end());
+    std::rotate(sharp_side.begin(), sharp_side.begin() + apex, sharp_side.end());
     if (closure == FaceClosure::Triangles && count > 4) {
       for (int i = 1; i + 1 < count; ++i) {
         mesh.indices.insert(mesh.indices.end(), {loop[0], loop[i], loop[i + 1]});
+        const char first = i == 1 ? sharp_side[0] : 0, last = i + 2 == count ? sharp_side[i + 1] : 0;
+        if (sharp) mesh.sharp.insert(mesh.sharp.end(), {first, sharp_side[i], last});
         end_face(face.node);
       }
     } else {
       mesh.indices.insert(mesh.indices.end(), loop.begin(), loop.end());
+      if (sharp) mesh.sharp.insert(mesh.sharp.end(), sharp_side.begin(), sharp_side.end());
       end_face(face.node);
     }
   }

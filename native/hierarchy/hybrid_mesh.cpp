@@ -132,6 +132,20 @@ int HybridMesh::depth() const {
   return depth;
 }
 
+void HybridMesh::set_sharp(int base_quad, int side) {
+  std::vector<int> edges{half_edge(base_quad, side) >> 1};
+  while (!edges.empty()) {
+    Edge& edge = edges_[edges.back()];
+    edges.pop_back();
+    edge.sharp = true;
+    if (edge.child >= 0) edges.insert(edges.end(), {edge.child, edge.child + 1});
+  }
+}
+
+bool HybridMesh::has_sharp_sides() const {
+  return std::any_of(edges_.begin(), edges_.end(), [](const Edge& e) { return e.sharp; });
+}
+
 // The level from which on the meshes of all levels are that of the leaves: one below depth() where the deepest refined quads have lost all their
 // children.
 int HybridMesh::deepest_level() const {
@@ -165,6 +179,7 @@ void HybridMesh::split_edge(int e) {
   add_edge(middle, to, level, edges_[e].origin);
   edges_[e].child = first;
   edges_[first].parent = edges_[first + 1].parent = e;
+  edges_[first].sharp = edges_[first + 1].sharp = edges_[e].sharp;
 }
 
 // Makes children, edges and vertices, but says nothing to the neighbours.

@@ -63,6 +63,7 @@ struct QuadMesh {
   std::vector<std::int32_t> root;     // #F: root of that node
   std::vector<VertexId> vertex;       // #V
   std::vector<MapLocation> location;  // #V: in the map of the first face that has the vertex
+  std::vector<char> sharp;            // as `indices`: is the edge from this corner to the face's next one on a feature? Empty: none is
 
   std::size_t face_count() const { return offsets.size() - 1; }
   std::size_t vertex_count() const { return vertex.size(); }
@@ -128,6 +129,10 @@ class HybridMesh {
   std::vector<int> roots() const;   // active ones, base first, then by operation
   int depth() const;                // highest level of an active node
   HalfEdge half_edge(int node, int side) const { return nodes_[node].half[side]; }
+  // Whether a node's side is on a feature of the surface, which vertices on it follow. What a side of the base is, all its parts are.
+  bool is_sharp(int node, int side) const { return edges_[nodes_[node].half[side] >> 1].sharp; }
+  void set_sharp(int base_quad, int side);
+  bool has_sharp_sides() const;
   VertexId corner(int node, int i) const { return from(nodes_[node].half[i]); }
   // Square of the node in that of an ancestor: lower corner and width.
   struct Square {
@@ -247,6 +252,7 @@ class HybridMesh {
     std::int32_t parent = -1, child = -1;  // children are child (from .. midpoint) and child + 1 (midpoint .. to)
     std::int32_t origin = -1;              // node that made it, 4 * node + side (root) or 4 * node + inner edge
     std::int8_t level = 0;
+    bool sharp = false;
   };
   struct FreeVertex {
     std::int32_t origin = -1;  // 4 * node + corner of a root quad

@@ -93,11 +93,36 @@ ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array
       kind[v] = std::abs(d.real()) > std::abs(d.imag()) ? Kind::SlideU : Kind::SlideV;
     }
   }
+  if (surface.sharp.empty()) return;
+  sharp.assign(mesh.edge_count, 0);
+  for (int q = 0; q < surface.patch_count(); ++q)
+    for (int i = 0; i < 4; ++i)
+      for (std::size_t k = 1; surface.sharp[q][i] && k < surface.sides[q][i].size(); ++k)
+        sharp[mesh.edge[mesh.find(surface.sides[q][i][k - 1], surface.sides[q][i][k])]] = 1;
+  hold_features(surface.sharp_corner);
+}
+
+// Vertices of features slide along them, but where these turn, branch or end.
+void ChartMesh::hold_features(const std::vector<char>& corner) {
+  for (int v = 0; v < static_cast<int>(points.size()); ++v) {
+    if (!mesh.vertex_alive(v) || kind[v] == Kind::Cone) continue;
+    std::vector<Complex> along;
+    for_star(v, [&](int g, const Complex& a, const Complex&) {
+      if (is_sharp(g)) along.push_back(a - uv[v]);
+    });
+    if (along.empty()) continue;
+    kind[v] = Kind::Pinned;
+    const bool is_corner = v < static_cast<int>(corner.size()) && corner[v];
+    if (is_corner || along.size() != 2 || mesh.is_boundary(v)) continue;
+    const bool along_u = std::abs(along[0].real()) > std::abs(along[0].imag());
+    const double across = along_u ? std::abs(along[1].imag()) : std::abs(along[1].real());
+    if (across == 0 && (along[0] * std::conj(along[1])).real() < 0) kind[v] = along_u ? Kind::SlideU : Kind::SlideV;
+  }
 }
 
 ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
-                     const std::vector<int>& vertex_of)
-    : mesh(collapsed), points(fine_points), scale(charts.scale) {
+                     const std::vector<int>& vertex_of, std::vector<char> sharp_edges)
+    : mesh(collapsed), points(fine_points), sharp(std::move(sharp_edges)), scale(charts.scale) {
   const std::size_t halves = collapsed.origin.size();
   uv.assign(points.size(), Complex(0, 0));
   kind.assign(points.size(), Kind::Free);
@@ -170,6 +195,10 @@ double ChartMesh::determinant(int f) const {
 bool ChartMesh::can_collapse(int h) const {
   const int v = mesh.from(h);
   if (kind[v] == Kind::Cone || kind[v] == Kind::Pinned) return false;
+  if (slides_inside(v)) {
+    // Along its line only, the rest of which must not be merged with an edge beside it.
+    if (!is_sharp(h) || is_sharp(EditMesh::prev(h)) || is_sharp(EditMesh::next(mesh.opposite[h]))) return false;
+  }
   return mesh.can_collapse(h);
 }
 
@@ -275,13 +304,14 @@ double ChartMesh::angle_at(int v) const {
 }
 
 bool ChartMesh::place(int v) {
-  std::vector<Complex> from, to;
-  for_star(v, [&](int, const Complex& a, const Complex& b) {
+  std::vector<Complex> from, to, line;  // line: its neighbours on the boundary or a feature
+  for_star(v, [&](int h, const Complex& a, const Complex& b) {
     from.push_back(a);
     to.push_back(b);
+    if (is_sharp(h)) line.push_back(a);
   });
   const std::size_t n = from.size();
-  const bool boundary = mesh.is_boundary(v);
+  if (mesh.is_boundary(v)) line = {from.front(), to.back()};
   // Least doubled area of the star's triangles; not positive where they wind around v more than once, as they can beside a cone of many quads.
   const auto depth = [&](const Complex& p) {
     double least = 1e300, angle = 0;
@@ -291,9 +321,9 @@ bool ChartMesh::place(int v) {
     }
     return angle < 9 ? least : -1.0;
   };
-  if (boundary) {
-    // Between its neighbours on the boundary, which lie on one line of the grid.
-    const Complex a = from.front(), b = to.back(), d = b - a;
+  if (!line.empty()) {
+    // Between its neighbours there, which lie on one line of the grid.
+    const Complex a = line.front(), b = line.back(), d = b - a;
     const bool along_u = std::abs(d.real()) > std::abs(d.imag());
     kind[v] = along_u ? Kind::SlideU : Kind::SlideV;
     for (const double t : {0.5, 0.7, 0.3, 0.85, 0.15, 0.95, 0.05, 0.99, 0.01, 0.999, 0.001}) {

@@ -46,17 +46,18 @@ Transition across(int side, int other_side);
 // is counter-clockwise in its chart at all times.
 class ChartMesh {
  public:
-  enum class Kind : std::uint8_t { Free, SlideU, SlideV, Pinned, Cone };  // Slide: a boundary vertex that keeps its other coordinate
+  // Slide: a vertex on the boundary or a feature, a straight line in the charts, that keeps its other coordinate.
+  enum class Kind : std::uint8_t { Free, SlideU, SlideV, Pinned, Cone };
 
   ChartMesh() = default;
   // From patches mapped to unit squares, (u, v) a face's corner.
   ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners);
 
   // The same charts over another mesh with the same triangles: one that was collapsed from a finer surface of area `fine_area`, whose points are
-  // `fine_points`. `vertex_of`: per vertex of `charts` that is alive its vertex there. What was collapsed comes back by undo_collapse(). Throws
-  // Error{Internal} if the triangles differ.
+  // `fine_points`. `vertex_of`: per vertex of `charts` that is alive its vertex there; `sharp_edges`: per name of an edge of `collapsed` whether it
+  // is on a feature, empty for none. What was collapsed comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
   ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
-            const std::vector<int>& vertex_of);
+            const std::vector<int>& vertex_of, std::vector<char> sharp_edges);
 
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
@@ -69,7 +70,9 @@ class ChartMesh {
   double determinant(int f) const;            // of the map from the flattened triangle
   double angle_at(int v) const;               // sum of the triangles' angles in the charts
 
-  bool can_collapse(int h) const;  // keeps cones, pinned vertices and boundaries; says nothing of the map
+  bool can_collapse(int h) const;  // keeps cones, pinned vertices, boundaries and features; says nothing of the map
+  bool is_sharp(int h) const { return !sharp.empty() && sharp[mesh.edge[h]]; }
+  bool slides_inside(int v) const { return (kind[v] == Kind::SlideU || kind[v] == Kind::SlideV) && !mesh.is_boundary(v); }
   // Would the triangles of from(h)'s star stay counter-clockwise, with determinants and 3D shapes not below the bounds?
   bool collapse_keeps_map(int h, double least_determinant, double least_shape) const;
   void collapse(int h);
@@ -94,10 +97,12 @@ class ChartMesh {
   std::vector<int> chart;          // per face: the patch whose square its chart continues
   std::vector<Transition> corner;  // per half-edge h: from the frame of from(h) to the chart of h's face
   std::vector<Transition> gluing;  // per half-edge: from the chart of its face to that of the face across
+  std::vector<char> sharp;         // per name of an edge: is it on a feature? Empty: none is
   double scale = 1;                // lengths are scaled so that the surface's area is the number of patches
 
  private:
   bool place(int v);
+  void hold_features(const std::vector<char>& corner);
 
   struct Flat {
     std::array<int, 3> corners{-1, -1, -1};

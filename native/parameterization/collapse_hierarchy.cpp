@@ -50,7 +50,7 @@ void CollapseHierarchy::collapse(int target) {
       std::vector<std::pair<double, int>> halves;
       int h = c_.mesh.out[v];
       do {
-        halves.push_back({(c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm(), h});
+        if (!c_.slides_inside(v) || c_.is_sharp(h)) halves.push_back({(c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm(), h});
         if (c_.mesh.is_boundary(v)) break;
         h = c_.mesh.ccw(h);
       } while (h >= 0 && h != c_.mesh.out[v]);

@@ -35,10 +35,18 @@ constexpr double kThin = 1e-9;  // determinant below which an energy is a roundi
 
 }  // namespace
 
+// Features' corners stay where they are.
+bool CornerMotion::is_corner(int v) const {
+  if (c_.kind[v] != ChartMesh::Kind::Pinned || !c_.mesh.is_boundary(v)) return false;
+  bool on_feature = false;
+  c_.for_star(v, [&](int h, const Complex&, const Complex&) { on_feature |= c_.is_sharp(h); });
+  return !on_feature;
+}
+
 std::vector<int> CornerMotion::all() const {
   std::vector<int> corners;
   for (int v = 0; v < static_cast<int>(c_.points.size()); ++v)
-    if (c_.mesh.vertex_alive(v) && c_.kind[v] == ChartMesh::Kind::Pinned) corners.push_back(v);
+    if (c_.mesh.vertex_alive(v) && is_corner(v)) corners.push_back(v);
   return corners;
 }
 
@@ -46,7 +54,7 @@ std::vector<int> CornerMotion::near(int v) const {
   std::vector<int> corners, region{v};
   c_.mesh.grow(region, 2);
   for (const int w : region)
-    if (c_.kind[w] == ChartMesh::Kind::Pinned) corners.push_back(w);
+    if (is_corner(w)) corners.push_back(w);
   return corners;
 }
 

@@ -41,6 +41,7 @@ class CornerMotion {
   }
 
  private:
+  bool is_corner(int v) const;
   int move(int corner, bool forward, int sweeps, int others);
   int step_downhill(int corner, bool forward, const std::vector<char>& allowed);
   int last_half_edge(int v) const;

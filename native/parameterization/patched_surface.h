@@ -40,6 +40,8 @@ struct PatchedSurface : QuadGraph {
   std::vector<PointSource> source;                     // per point
   std::vector<int> patch;                              // per face
   std::vector<std::array<std::vector<int>, 4>> sides;  // per patch and side: the points along it, both ends included
+  std::vector<std::array<char, 4>> sharp;              // per patch and side: does it run along a feature, as all of that curve does? Empty: none does
+  std::vector<char> sharp_corner;                      // per point, later ones left out: a corner of features
 
   const QuadGraph& graph() const { return *this; }
 };

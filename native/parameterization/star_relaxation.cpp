@@ -24,12 +24,14 @@ struct FoldedDistortion {
 }  // namespace
 
 void StarRelaxation::gather(int v) {
-  star_.clear();
+  star_.clear(), line_.clear();
   c_.for_star(v, [&](int g, const Complex& a, const Complex& b) {
+    if (c_.is_sharp(g)) line_.push_back(a);
     const FlatTriangle& t = c_.flat(g / 3);
     const int i = g % 3, j = (i + 1) % 3, k = (i + 2) % 3;
     star_.push_back({a, b, {{t.alpha[i], t.alpha[j], t.alpha[k]}, t.area}});
   });
+  if (c_.mesh.is_boundary(v)) line_ = {star_.front().a, star_.back().b};
 }
 
 double StarRelaxation::star_energy(const Complex& p) const {
@@ -98,9 +100,9 @@ void StarRelaxation::relax_folded(int v, double eps) {
   if (!std::isfinite(d.real()) || !std::isfinite(d.imag())) return;
   double t = 1;
   if (c_.kind[v] != ChartMesh::Kind::Free) {
-    // Never past the neighbours on the boundary: these keep their order.
-    for (const Complex& end : {star_.front().a - p, star_.back().b - p})
-      if (const double along = (end * std::conj(d)).real(); along > 0) t = std::min(t, 0.9 * along / std::norm(d));
+    // Never past the neighbours on its line: these keep their order.
+    for (const Complex& end : line_)
+      if (const double along = ((end - p) * std::conj(d)).real(); along > 0) t = std::min(t, 0.9 * along / std::norm(d));
   }
   for (int tries = 0; tries < 8; ++tries, t *= 0.5) {
     const Complex x = p + t * d;
@@ -125,7 +127,7 @@ bool StarRelaxation::is_wound(int v) const {
       return false;
     case ChartMesh::Kind::SlideU:
     case ChartMesh::Kind::SlideV:
-      return c_.angle_at(v) > 4;
+      return c_.angle_at(v) > (c_.mesh.is_boundary(v) ? 4 : 9);
     default:
       return c_.angle_at(v) > 9;
   }

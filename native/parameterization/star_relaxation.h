@@ -49,6 +49,7 @@ class StarRelaxation {
   ChartMesh& c_;
   Distortion density_;
   std::vector<Spoke> star_;
+  std::vector<Complex> line_;  // neighbours on the line on which the vertex slides
   std::int64_t relaxed_folded_ = 0;
 };
 

@@ -209,7 +209,7 @@ class AdaptiveRefinement {
     QuadMesh mesh = closed.final_mesh();
     const SurfaceSamples samples(closed, fit_sample_count(mesh.points.size()), HybridMesh::max_level);
     std::vector<FitSample> on = samples.on(closed, mesh);
-    fit_mesh(mesh, boundary_vertices(mesh), parameter_shares(closed, mesh), on, final_fit().first, progress);
+    fit_mesh(mesh, held_vertices(mesh), parameter_shares(closed, mesh), on, final_fit().first, progress);
     const std::vector<double> squared = squared_distances(mesh, on);
     LeafErrors errors;
     errors.squared.assign(leaves.hierarchy().node_count(), 0);

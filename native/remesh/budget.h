@@ -20,6 +20,7 @@ struct Budget {
 struct Target {
   std::int64_t vertices = 0;  // 0: what the options say, or as many as the source has
   int levels_less = 0;        // than usual above the base, which has four times as many quads for each
+  bool features = true;       // does the base keep the source's, if there are any?
 };
 
 // Vertices of a uniform mesh some levels above one of so many quads, of that Euler number and with so many sides on the boundary.

@@ -22,7 +22,8 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kRequests = 8;
-constexpr int kMostMisses = 3;  // requests with which a few quads too many are made up for, before a coarser mesh is kept
+constexpr int kFeatureRequests = 3;  // with features: what fails then is seldom a matter of near-ties
+constexpr int kMostMisses = 3;       // requests with which a few quads too many are made up for, before a coarser mesh is kept
 // A base of more quads than this has room for a ring around a feature that sticks out, so that it is sought of so many quads fewer.
 constexpr double kRoomyBase = 280;
 // The last triangles of a decimation are too few to choose quads from: below this size the base's is taken for the least.
@@ -37,6 +38,9 @@ int least_quads(const TopologySummary& topology) {
 // The construction of a base, whose quads get their maps.
 Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
   Construction made(map.layout.graph(), area_of(working.mesh), task.base.version());
+  for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
   std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, working.mesh.faces, task.progress.part(0.5, 0.55));
   for (int q = 0; q < map.layout.patch_count(); ++q) {
     const char* defect = find_map_defect(maps[q]);
@@ -66,9 +70,10 @@ void close_finest(Candidate& c) {
   std::sort(c.unopened.begin(), c.unopened.end());
 }
 
-Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request, WorkingSurfaceInUse& in_use) {
+Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request, bool features, WorkingSurfaceInUse& in_use) {
   const RemeshOptions& options = task.options;
   Plan::Origin origin;
+  if (features) origin.features = options.features, origin.feature_angle = options.feature_angle;
   origin.surface = task.source.fingerprint;
   origin.faces = working_faces(budget.base_size, budget.vertices);
   BaseDomainOptions& base_options = origin.base;
@@ -81,7 +86,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   base_options.seed = request.seed;
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
   const BaseDomain base = make_base(task, origin, in_use);
-  const WorkingSurface& working = in_use.of_size(task, origin.faces);
+  const WorkingSurface& working = in_use.of(task, origin);
   Found<BaseMap> map = map_to_base(working.mesh, base, layout_search_options(options, budget, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
   if (has_twins(map->layout.graph())) throw NoMap("two of the base's quads have the same corners");
@@ -89,6 +94,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   const auto made_with = [&](std::int64_t most_quads, bool skin) {
     LateTopology late;
     Candidate c = assemble_candidate(task, working, *map, origin, [&](Construction& made) {
+      if (!working.features.empty()) return std::vector<Plan::Region>();  // a region's quads would not keep them
       std::vector<Plan::Region> regions = grow_skin(made, task, skin ? skin_options(task, budget, base, request) : SkinOptions());
       late = open_late(made, task, most_quads);
       regions.insert(regions.end(), late.regions.begin(), late.regions.end());
@@ -183,24 +189,35 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
   return names;
 }
 
-const WorkingSurface& WorkingSurfaceInUse::of_size(const RemeshTask& task, std::int64_t faces) {
-  if (faces != faces_) {
+const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int64_t faces, Features features, double angle) {
+  if (faces != faces_ || features != features_) {
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
-    surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), task.base.held());
+    surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), task.base.held(),
+                                    feature_options(features, angle));
     faces_ = faces;
+    features_ = features;
   }
   return surface_;
+}
+
+const WorkingSurface& WorkingSurfaceInUse::of_size(const RemeshTask& task, std::int64_t faces) { return made(task, faces, Features::None, 0); }
+
+const WorkingSurface& WorkingSurfaceInUse::of(const RemeshTask& task, const Plan::Origin& origin) {
+  return made(task, origin.faces, origin.features, origin.feature_angle);
 }
 
 BaseDomain make_base(const RemeshTask& task, const Plan::Origin& origin, WorkingSurfaceInUse& working) {
   task.progress.stage("base domain");
   task.watch.start("base");
-  BaseDomain base(working.of_size(task, origin.faces).mesh, origin.base, task.progress.part(0.05, 0.15));
+  const WorkingSurface& surface = working.of(task, origin);
+  BaseDomain base(surface.mesh, surface.features, origin.base, task.progress.part(0.05, 0.15));
   task.progress.stage("map");
   task.watch.start("map");
   return base;
 }
+
+bool keeps_features(const RemeshTask& task) { return task.source.keeps_features && !task.base.series; }
 
 CandidateSearch search_candidate(const RemeshTask& task, const Target& target, const std::vector<BaseRequest>& requests) {
   const RemeshOptions& options = task.options;
@@ -210,11 +227,13 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   WorkingSurfaceInUse working;
   Found<Candidate> missing;  // leaves a level of the budget unused, for a few quads
   int misses = 0;
+  const bool features = target.features && keeps_features(task);
   for (const BaseRequest& request : requests) {
-    Found<Candidate> c = found([&] { return make_candidate(task, budget, request, working); });
+    if (features && &request - requests.data() == kFeatureRequests) break;
+    Found<Candidate> c = found([&] { return make_candidate(task, budget, request, features, working); });
     if (c && just_misses(task, budget, *c)) {
       if (!missing) missing = std::move(c);
-      c = found([&] { return make_candidate(task, budget, request, working); });
+      c = found([&] { return make_candidate(task, budget, request, features, working); });
       if (!c || just_misses(task, budget, *c)) {
         if (++misses == kMostMisses) break;
         continue;
@@ -256,6 +275,7 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
   HybridMesh& hierarchy = made.hierarchy();
   hierarchy.set_closure(task.options.faces);
   Candidate c;
+  c.keeps_features = !working.features.empty();
   c.base_quads = base.patch_count();
   c.base_vertices = base.node_count;
   c.finest = made.level();

@@ -35,6 +35,8 @@ struct Candidate {
   std::vector<int> opened_on;                         // per event of the topology: the level
   std::vector<std::pair<int, std::string>> unopened;  // events of the topology that found no room above the base, and why
   std::vector<std::string> waited;                    // per event: why it opened no sooner; empty with a plan
+  bool keeps_features = false;                        // are sharp edges of the surface sides of the base?
+  std::string lost_features;                          // why they are not; empty: they are, or there are none
 
   QuadMesh final_mesh;                                // fitted
   std::vector<QuadMesh> level_meshes;                 // of every level, fitted; the last is the final mesh
@@ -51,6 +53,9 @@ struct BaseRequest {
 };
 // Eight of them. `another`: others than those of the first time.
 std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool another);
+
+// Does the source have sharp edges that a base can keep? Where topology opens late, surface is exchanged, which knows of none.
+bool keeps_features(const RemeshTask& task);
 
 struct CandidateSearch {
   Found<Candidate> candidate;
@@ -74,10 +79,15 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
 class WorkingSurfaceInUse {
  public:
   const WorkingSurface& of_size(const RemeshTask& task, std::int64_t faces);
+  // The one that a plan's origin tells of, with the features that it keeps.
+  const WorkingSurface& of(const RemeshTask& task, const Plan::Origin& origin);
 
  private:
+  const WorkingSurface& made(const RemeshTask& task, std::int64_t faces, Features features, double angle);
+
   WorkingSurface surface_;
   std::int64_t faces_ = -1;
+  Features features_ = Features::None;
 };
 
 // The base domain that a plan's origin tells of, on the surface of the size that it names.

@@ -252,6 +252,15 @@ std::vector<double> smoothness_at(const QuadMesh& mesh, const FitOptions& option
 
 }  // namespace
 
+std::vector<char> held_vertices(const QuadMesh& mesh) {
+  std::vector<char> held = boundary_vertices(mesh);
+  if (mesh.sharp.empty()) return held;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
+      if (mesh.sharp[i]) held[mesh.indices[i]] = held[mesh.indices[i + 1 < mesh.offsets[f + 1] ? i + 1 : mesh.offsets[f]]] = 1;
+  return held;
+}
+
 std::vector<char> boundary_vertices(const QuadMesh& mesh) {
   std::vector<std::pair<int, int>> edges;
   for (std::size_t f = 0; f < mesh.face_count(); ++f)

@@ -36,5 +36,7 @@ std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSampl
 
 // Vertices on the mesh's boundary.
 std::vector<char> boundary_vertices(const QuadMesh& mesh);
+// Vertices on curves, which the maps hold there: the boundary and features.
+std::vector<char> held_vertices(const QuadMesh& mesh);
 
 }  // namespace hybrid_mesh

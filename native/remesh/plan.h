@@ -11,6 +11,7 @@
 #include "layout/layout_outline.h"
 #include "layout/operations/region_repatch.h"
 #include "layout/search/layout_script.h"
+#include "remesh/remesh.h"
 #include "remesh/working_surface.h"
 #include "topology/surface_series.h"
 
@@ -25,8 +26,10 @@ struct Plan {
   // How the base came about on the surface that the plan was made on. On that surface it is made in the same way again; on others the outline is laid
   // out.
   struct Origin {
-    std::string surface;     // its fingerprint()
-    std::int64_t faces = 0;  // see make_working_surface()
+    std::string surface;                 // its fingerprint()
+    std::int64_t faces = 0;              // see make_working_surface()
+    Features features = Features::None;  // that the base keeps
+    double feature_angle = 0;            // with Features::Given
     BaseDomainOptions base;
     LayoutScript script;                 // the base's edits
     std::optional<BoundaryTower> tower;  // instead of all but the surface: in the input's space

@@ -113,8 +113,13 @@ Plan::Origin origin_from_json(const PlanEntry& entry) {
     origin.tower = tower_from_json(entry);
     return origin;
   }
-  entry.only({"surface", "faces", "size", "boundary_side", "least", "seed", "vertices", "vertices_a_quad", "rounds"});
+  entry.only({"surface", "faces", "size", "boundary_side", "least", "seed", "vertices", "vertices_a_quad", "rounds", "features"});
   Plan::Origin origin;
+  if (entry.has("features")) {
+    const PlanEntry features = entry.at("features");
+    origin.features = features.is(kAutomatic) ? Features::Auto : Features::Given;
+    if (origin.features == Features::Given) origin.feature_angle = features.number(0);
+  }
   origin.surface = entry.at("surface").text();
   origin.faces = entry.at("faces").integer(0, std::numeric_limits<std::int64_t>::max());
   origin.base.size = entry.at("size").number(1);

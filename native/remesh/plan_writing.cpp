@@ -82,11 +82,14 @@ Json origin_to_json(const Plan::Origin& origin) {
     for (const LayoutEdit& edit : round) list.push_back(raw_edit(edit));
     rounds.push_back(std::move(list));
   }
-  return {{"surface", origin.surface},          {"faces", origin.faces},
-          {"size", origin.base.size},           {"boundary_side", origin.base.boundary_side},
-          {"least", origin.base.least},         {"seed", origin.base.seed},
-          {"vertices", origin.script.vertices}, {"vertices_a_quad", origin.script.vertices_a_quad},
-          {"rounds", std::move(rounds)}};
+  Json out{{"surface", origin.surface},          {"faces", origin.faces},
+           {"size", origin.base.size},           {"boundary_side", origin.base.boundary_side},
+           {"least", origin.base.least},         {"seed", origin.base.seed},
+           {"vertices", origin.script.vertices}, {"vertices_a_quad", origin.script.vertices_a_quad},
+           {"rounds", std::move(rounds)}};
+  if (origin.features == Features::Auto) out["features"] = kAutomatic;
+  if (origin.features == Features::Given) out["features"] = origin.feature_angle;
+  return out;
 }
 
 Json curves_to_json(const std::vector<DrawnStroke>& strokes) {

@@ -79,9 +79,9 @@ std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   } else {
     const Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
     if (!base) return std::nullopt;
-    map = map_to_base(working.of_size(task, faces).mesh, *base.value, plan.origin->script, task.progress.part(0.15, 0.45));
+    map = map_to_base(working.of(task, *plan.origin).mesh, *base.value, plan.origin->script, task.progress.part(0.15, 0.45));
   }
-  Found<Candidate> c = assembled(task, working.of_size(task, faces), std::move(map), plan.origin, operations_of(task, plan.regions));
+  Found<Candidate> c = assembled(task, working.of(task, *plan.origin), std::move(map), plan.origin, operations_of(task, plan.regions));
   if (!c) return std::nullopt;
   const LayoutOutline made = plan_from_json(c->plan).base;
   if (made.nodes != plan.base.nodes || made.quads != plan.base.quads) return std::nullopt;

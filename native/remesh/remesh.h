@@ -18,6 +18,8 @@ enum class Components { Apart, Joined };
 // Where the topology that the base domain need not have opens: on finer levels, or in the base. Auto: late with a minimal base.
 enum class TopologyMode { Auto, Late, Base };
 enum class BaseSize { Auto, Minimal, Given };
+// Whether sharp edges are kept. Auto: where the surface has flat or smooth faces that meet at angles; Given: all edges from an angle on.
+enum class Features { Auto, None, Given };
 
 struct RemeshOptions {
   std::int64_t vertices = 0;  // hard upper bound on the final mesh's vertices; 0 = none
@@ -32,8 +34,10 @@ struct RemeshOptions {
   double remove_noise = 0;       // handles and tunnels with shorter loops, as a fraction of the bounding-box diagonal, are closed for good
   double stretch_threshold = 4;  // above it skin is grown (irregular operations)
   bool semi_regular = false;     // no irregular operations
-  double drop_components = 0;    // see RepairOptions
-  bool strict = false;           // refuse input that needs repair
+  Features features = Features::Auto;
+  double feature_angle = 40;   // degrees between the normals of two faces; with Features::Given
+  double drop_components = 0;  // see RepairOptions
+  bool strict = false;         // refuse input that needs repair
   std::uint64_t seed = 1;
   std::string plan;  // JSON text, see Plan: what decides base and operations instead of a search; empty: none
   int threads = 0;   // 0 = all cores; never changes the result

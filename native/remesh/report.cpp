@@ -130,6 +130,14 @@ Json describe_level(const HybridMesh& hierarchy, int level, const QuadMesh& mesh
           {"irregular_ops", operations_of(hierarchy, level)}};
 }
 
+// The input's sharp edges; null where it has none.
+Json describe_features(const RemeshTask& task, const Candidate& c) {
+  if (!task.source.has_features) return nullptr;
+  Json features{{"corners", task.source.feature_corners}, {"kept", c.keeps_features}};
+  if (const std::string reason = why_features_are_lost(task, c); !reason.empty()) features["reason"] = reason;
+  return features;
+}
+
 Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& c) {
   const TopologySummary t = summarize_topology(to_soup(c.final_mesh)), &topology = task.source.topology;
   if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology.components ||
@@ -141,6 +149,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
   Json report;
   report["input"] = describe_input(input, task.source);
   report["topology"] = describe_topology(task, c);
+  report["features"] = describe_features(task, c);
   report["base"] = {{"quads", c.base_quads}, {"vertices", c.base_vertices}};
   report["levels"] = c.level_reports;
   report["final"] = {{"vertices", c.final_mesh.points.size()},

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/source.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "surface/fingerprint.h"
 #include "topology/topological_noise.h"
 
@@ -42,7 +45,32 @@ void close_small_handles(Source& source, double length, const Progress& progress
   }
 }
 
+// Fewer vertices a corner of features have no room for the quads around it.
+constexpr double kVerticesACorner = 10;
+
+void look_for_features(Source& source, const RemeshOptions& options) {
+  std::optional<FeatureOptions> wanted = feature_options(options.features, options.feature_angle);
+  if (!wanted) return;
+  wanted->least_length *= source.placement.diagonal;
+  const FeatureGraph graph = find_features(source.repaired, *wanted);
+  source.has_features = !graph.empty();
+  source.feature_corners = static_cast<int>(std::count(graph.corners.begin(), graph.corners.end(), 1));
+  source.keeps_features =
+      source.has_features && (options.vertices == 0 || kVerticesACorner * source.feature_corners <= static_cast<double>(options.vertices));
+}
+
 }  // namespace
+
+std::optional<FeatureOptions> feature_options(Features features, double angle) {
+  FeatureOptions options;
+  if (features == Features::None) return {};
+  if (features == Features::Given) {
+    options.angle = options.weak_angle = angle;
+    options.crispness = options.least_total = 0;
+    options.most_left = std::numeric_limits<double>::infinity();
+  }
+  return options;
+}
 
 Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch) {
   progress.stage("repair");
@@ -57,6 +85,7 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
   if (options.remove_noise > 0) close_small_handles(source, options.remove_noise, progress);
   source.topology = summarize_topology(to_soup(source.repaired));
   source.area = area_of(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
+  look_for_features(source, options);
   source.fingerprint = fingerprint(source.repaired);
   PolygonSoup unit = input;
   for (Vec3& p : unit.points) p = source.placement.to_unit(p);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/context.h"
@@ -18,10 +19,13 @@ namespace hybrid_mesh {
 struct Source {
   TriangleSurface repaired;  // where the input stands
   RepairReport repairs;
-  int removed_handles = 0;   // of noise, see RemeshOptions::remove_noise
-  TopologySummary topology;  // of `repaired`
-  Placement placement;       // that brings it to unit size
-  double area = 0;           // of unit size
+  int removed_handles = 0;      // of noise, see RemeshOptions::remove_noise
+  TopologySummary topology;     // of `repaired`
+  Placement placement;          // that brings it to unit size
+  double area = 0;              // of unit size
+  bool has_features = false;    // sharp edges of the kind that is asked for
+  bool keeps_features = false;  // ... and is there room for them in the mesh that is asked for?
+  int feature_corners = 0;      // where they end, meet or turn
   std::string fingerprint;
   std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
 };
@@ -34,6 +38,9 @@ struct RemeshTask {
   const Progress& progress;
   Stopwatch& watch;
 };
+
+// How sharp edges are found, as the options ask; none: they are not kept.
+std::optional<FeatureOptions> feature_options(Features features, double angle);
 
 // Throws Error{InvalidInput} where strict mode refuses repairs.
 Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);

@@ -29,21 +29,21 @@ void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFi
 
 void fit_to_samples(QuadMesh& mesh, std::vector<FitSample> on, const std::vector<double>& share, const SurfaceFitOptions& options,
                     const Progress& progress) {
-  const std::vector<char> boundary = boundary_vertices(mesh);
+  const std::vector<char> held = held_vertices(mesh);
   FitOptions fit = options.first;
-  fit_mesh(mesh, boundary, share, on, fit, progress);
+  fit_mesh(mesh, held, share, on, fit, progress);
   // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
   for (int turn = 0; turn < options.turns; ++turn) {
-    relax_angles(mesh, boundary, AngleRelaxationOptions(), progress);
+    relax_angles(mesh, held, AngleRelaxationOptions(), progress);
     fit.rounds = turn + 1;
-    fit_mesh(mesh, boundary, share, on, fit, progress);
+    fit_mesh(mesh, held, share, on, fit, progress);
   }
   // What is still folded is unfolded even where the surface bends: a few quads, at the cost of a little distance.
   AngleRelaxationOptions unfold;
   unfold.enough = 0.05;
   unfold.flatness = -1;
   unfold.reach = options.unfold;
-  relax_angles(mesh, boundary, unfold, progress);
+  relax_angles(mesh, held, unfold, progress);
 }
 
 }  // namespace hybrid_mesh

@@ -75,6 +75,12 @@ std::optional<Reason> runs_through_itself(const Finished& f) {
                 found.where};
 }
 
+std::optional<Reason> features_lost(const Finished& f) {
+  const std::string why = why_features_are_lost(f.task, f.candidate);
+  if (why.empty()) return {};
+  return Reason{"features", "the sharp edges of the surface are not kept: " + why, {}};
+}
+
 std::optional<Reason> few_vertices(const Finished& f) {
   const RemeshOptions& options = f.task.options;
   const bool uniform = options.refinement == Refinement::Uniform;
@@ -93,10 +99,18 @@ std::optional<Reason> few_vertices(const Finished& f) {
 }
 
 // In the order in which people want to know.
-constexpr std::optional<Reason> (*kReasons[])(const Finished&) = {surface_missed, boundary_missed,     error_missed,
-                                                                  many_inverted,  runs_through_itself, few_vertices};
+constexpr std::optional<Reason> (*kReasons[])(const Finished&) = {surface_missed,      boundary_missed, error_missed, many_inverted,
+                                                                  runs_through_itself, features_lost,   few_vertices};
 
 }  // namespace
+
+std::string why_features_are_lost(const RemeshTask& task, const Candidate& candidate) {
+  if (!task.source.has_features || candidate.keeps_features) return {};
+  if (!candidate.lost_features.empty()) return candidate.lost_features;
+  if (!task.source.keeps_features) return "they have more corners than the mesh has room for; more vertices have";
+  if (task.base.series) return "handles, boundaries or tubes open on finer levels; with topology in the base they are";
+  return "the plan's base was laid out without them";
+}
 
 Finished measured(const RemeshTask& task, const Candidate& candidate, const Progress& progress) {
   const Source& source = task.source;

@@ -29,6 +29,9 @@ struct Finished {
 };
 Finished measured(const RemeshTask& task, const Candidate& candidate, const Progress& progress);
 
+// Why the input's sharp edges are not kept; empty where they are, or where there are none.
+std::string why_features_are_lost(const RemeshTask& task, const Candidate& candidate);
+
 // Everything that makes the result poor; empty for a good one.
 std::vector<Reason> reasons_against(const Finished& finished);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "layout/base/closed_components.h"
@@ -24,27 +25,69 @@ void place_last_point(WorkingSurface& surface, int hint) {
   surface.place.push_back({closest.face, closest.weights});
 }
 
-// A side of the base that runs along the boundary is a straight line in the map: a triangle between an inner edge that joins two of its vertices and
-// that line would have no area.
-void split_chords(WorkingSurface& surface) {
+// The edges of curves, by their ends: what is split changes faces and half-edges.
+class CurveEdges {
+ public:
+  CurveEdges(const TriangleSurface& mesh, const std::vector<char>& marks) {
+    for (int h = 0; h < static_cast<int>(marks.size()); ++h)
+      if (marks[h]) edges_.insert(std::minmax(mesh.from(h), mesh.to(h)));
+  }
+  bool has(int a, int b) const { return edges_.count(std::minmax(a, b)) > 0; }
+  void split(int a, int b, int middle) {
+    edges_.erase(std::minmax(a, b));
+    edges_.insert(std::minmax(a, middle));
+    edges_.insert(std::minmax(middle, b));
+  }
+  std::vector<char> marks(const TriangleSurface& mesh) const {
+    std::vector<char> marks(mesh.opposite.size(), 0);
+    for (int h = 0; h < static_cast<int>(marks.size()); ++h) marks[h] = has(mesh.from(h), mesh.to(h));
+    return marks;
+  }
+
+ private:
+  std::set<std::pair<int, int>> edges_;
+};
+
+// Splits the inner edges that `chosen` names, no two of one face at once, until it names none. The new point's number is told to `made`.
+template <class Chosen, class Made>
+void split_edges(WorkingSurface& surface, const Chosen& chosen, const Made& made) {
   TriangleSurface& mesh = surface.mesh;
-  if (std::find(mesh.opposite.begin(), mesh.opposite.end(), -1) == mesh.opposite.end()) return;
-  const std::vector<int> loop = EditMesh(mesh).boundary_loops();
-  const int points = static_cast<int>(mesh.points.size());
-  std::vector<PointSource> sources(points);  // asked for, not used: places say more
+  std::vector<PointSource> sources(mesh.points.size());  // asked for, not used: places say more
   for (bool any = true; any;) {
     any = false;
     std::vector<char> split(mesh.faces.size(), 0);
     for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
       const int o = mesh.opposite[h], a = mesh.from(h), b = mesh.to(h);
-      if (o < h || a >= points || b >= points || loop[a] < 0 || loop[a] != loop[b] || split[h / 3] || split[o / 3]) continue;
+      if (o < h || split[h / 3] || split[o / 3] || !chosen(a, b)) continue;
       split[h / 3] = split[o / 3] = 1;
+      made(a, b, static_cast<int>(mesh.points.size()));
       split_inner_edge(mesh, sources, h);
       place_last_point(surface, mesh.source_face[h / 3]);
       any = true;
     }
     if (any) connect_half_edges(mesh);
   }
+}
+
+// A side of the base that runs along a curve (the boundary, a feature) is a straight line in the map: a triangle between an inner edge that joins two
+// of its points and that line would have no area. And a curve of one edge has no vertex to give away, where the triangles beside it are odd in
+// number.
+void split_chords(WorkingSurface& surface, double corner_angle) {
+  TriangleSurface& mesh = surface.mesh;
+  CurveEdges curves(mesh, surface.features.edges);
+  const std::vector<char> corners = surface.features.corners;
+  if (!surface.features.empty()) {
+    const auto is_corner = [&](int v) { return v < static_cast<int>(corners.size()) && corners[v]; };
+    split_edges(
+        surface, [&](int a, int b) { return is_corner(a) && is_corner(b) && curves.has(a, b); }, [&](int a, int b, int m) { curves.split(a, b, m); });
+  }
+  const std::vector<int> component = curve_components(mesh, curves.marks(mesh));
+  const auto on_one = [&](int a, int b) {
+    const int count = static_cast<int>(component.size());
+    return a < count && b < count && component[a] >= 0 && component[a] == component[b] && !curves.has(a, b);
+  };
+  split_edges(surface, on_one, [](int, int, int) {});
+  if (!surface.features.empty()) surface.features = feature_graph(mesh, curves.marks(mesh), corner_angle);
 }
 
 // Closed components of few triangles have no room for the quads of a cube: their triangles are quartered until they have.
@@ -144,7 +187,7 @@ void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired)
 }
 
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
-                                    const std::vector<char>& held, const WorkingSizes& sizes) {
+                                    const std::vector<char>& held, const std::optional<FeatureOptions>& features, const WorkingSizes& sizes) {
   TriangleSurface placed = repaired;
   for (Vec3& p : placed.points) p = placement.to_unit(p);
   const double triangle = area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
@@ -163,9 +206,10 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   w.placement = placement;
   const bool has_boundary = std::find(placed.opposite.begin(), placed.opposite.end(), -1) != placed.opposite.end();
   const bool quartered = quarter_small_components(w, placed);
-  if (shaped.unchanged && !has_boundary && !quartered) return w;  // every face is one of the repaired surface
+  if (features) w.features = find_features(w.mesh, *features);
+  if (shaped.unchanged && !has_boundary && !quartered && w.features.empty()) return w;  // every face is one of the repaired surface
   if (!w.query) w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
-  split_chords(w);
+  if (has_boundary || !w.features.empty()) split_chords(w, features ? features->corner_angle : 0);
   return w;
 }
 

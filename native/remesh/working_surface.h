@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "base/context.h"
 #include "parameterization/patch_map.h"
 #include "surface/closest_point.h"
+#include "surface/feature_graph.h"
 #include "surface/placement.h"
 #include "surface/polygon_soup.h"
 #include "surface/triangle_surface.h"
@@ -18,6 +20,8 @@ namespace hybrid_mesh {
 struct WorkingSurface {
   TriangleSurface mesh;             // source_face: face of the repaired surface that the face lies on, or mostly if it lies on several
   std::vector<SurfacePoint> place;  // per point, on the repaired surface
+  // Sharp edges that base and maps keep. No inner edge but theirs joins two of their points, or two points of curves that meet.
+  FeatureGraph features;
 
   // Makes a map's sources, given in faces of `mesh`, name faces of the repaired surface: of a triangle that lies on several the one under its
   // middle, and corners that are beyond it are moved onto it.
@@ -45,8 +49,9 @@ std::int64_t working_faces(double base_quads, std::int64_t vertices);
 double area_of(const TriangleSurface& surface);
 
 // `faces`: see working_faces(). Where the repaired surface's are smaller, they stay. `held`: per face of it whether nothing may be mended there;
-// empty: of none.
+// empty: of none. `features`: how its sharp edges are found; none: they are not kept.
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
-                                    const std::vector<char>& held = {}, const WorkingSizes& sizes = WorkingSizes());
+                                    const std::vector<char>& held = {}, const std::optional<FeatureOptions>& features = {},
+                                    const WorkingSizes& sizes = WorkingSizes());
 
 }  // namespace hybrid_mesh

@@ -32,7 +32,7 @@ def reasons_of(collection):
 def poor(world, **transform):
     """The needle's source and the collection, with its one reason that has a place."""
     source = with_needle(world, **transform)
-    collection, _, preview = world.remesh(source, vertices=300)
+    collection, _, preview = world.remesh(source, vertices=300, features="NONE")
     index = next(i for i, reason in enumerate(reasons_of(collection)) if reason["what"] == "hausdorff")
     return source, collection, preview, index
 

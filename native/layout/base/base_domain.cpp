@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/base/base_domain.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "base/found.h"
 #include "layout/base/curve_network.h"
 #include "layout/base/decimation.h"
 #include "layout/base/quad_layout.h"
@@ -28,8 +32,9 @@ void redo(EditMesh& mesh, const MeshEdit& edit) {
 class CoarseSurface {
  public:
   // Undoes `log` until `vertices` vertices are alive and nothing but collapses is left.
-  CoarseSurface(const TriangleSurface& surface, const EditMesh& decimated, const std::vector<MeshEdit>& log, double vertices, CutSurface& out)
-      : surface_(surface), log_(log), out_(out), vertex_(surface.points.size(), -1), face_(surface.faces.size(), -1) {
+  CoarseSurface(const TriangleSurface& surface, const EditMesh& decimated, const MeshFeatures& features, const std::vector<MeshEdit>& log,
+                double vertices, CutSurface& out)
+      : surface_(surface), features_(features), log_(log), out_(out), vertex_(surface.points.size(), -1), face_(surface.faces.size(), -1) {
     EditMesh& mesh = out.collapsed;
     mesh = decimated;
     const auto is_flip = [](const MeshEdit& e) { return e.kind == MeshEdit::Kind::Flip; };
@@ -42,6 +47,7 @@ class CoarseSurface {
 
   void cut(const EditMesh& decimated, QuadLayout layout, const Progress& progress) {
     EditMesh mesh(out_.coarse);
+    const MeshFeatures features(out_.coarse, coarse_features(), mesh);
     std::vector<MeshEdit> log;
     for (std::size_t i = kept_; i < log_.size(); ++i) {
       log.push_back({log_[i].kind, translated(log_[i].half_edge)});
@@ -53,11 +59,22 @@ class CoarseSurface {
     for (int h = 0; h < static_cast<int>(decimated.edge.size()); ++h)
       if (decimated.face_alive(h / 3)) renamed[decimated.edge[h]] = mesh.edge[translated(h)];
     for (QuadLayout::Curve& c : layout.curves) c = {vertex_[c.start], vertex_[c.end], renamed[c.edge]};
-    out_.patches = cut_along_layout(out_.coarse, mesh, log, layout, progress);
+    out_.patches = cut_along_layout(out_.coarse, mesh, features, log, layout, progress);
+    out_.sharp = features_.marks();
   }
 
  private:
   int translated(int half_edge) const { return 3 * face_[half_edge / 3] + half_edge % 3; }
+
+  FeatureGraph coarse_features() const {
+    FeatureGraph graph;
+    if (features_.empty()) return graph;
+    graph.edges.assign(3 * out_.coarse.faces.size(), 0);
+    for (int h = 0; h < static_cast<int>(out_.collapsed.edge.size()); ++h)
+      if (face_[h / 3] >= 0) graph.edges[translated(h)] = features_.on(out_.collapsed, h);
+    for (const int v : out_.vertex) graph.corners.push_back(features_.is_corner(v));
+    return graph;
+  }
 
   void compact() {
     const EditMesh& mesh = out_.collapsed;
@@ -78,6 +95,7 @@ class CoarseSurface {
   }
 
   const TriangleSurface& surface_;
+  const MeshFeatures& features_;
   const std::vector<MeshEdit>& log_;
   CutSurface& out_;
   std::vector<int> vertex_, face_;  // of the surface: the coarse one's, or -1
@@ -86,31 +104,56 @@ class CoarseSurface {
 
 }  // namespace
 
-BaseDomain::BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress)
-    : surface_(surface), decimated_(surface) {
+BaseDomain::BaseDomain(const TriangleSurface& surface, const FeatureGraph& features, const BaseDomainOptions& options, const Progress& progress)
+    : surface_(surface), features_(surface, features, EditMesh(surface)) {
+  // Times the size, how many faces quads are chosen from: room for their clean-up, which merges some of them. Between features, whose vertices stay,
+  // more of them make better corners, but not where there is no room for as many.
+  const std::vector<double> ways = features.empty() ? std::vector<double>{2.6} : std::vector<double>{5, 3.9, 3.1};
+  Found<Decimated> best;
+  const auto excess = [&](const Decimated& d) { return std::max(0.0, static_cast<double>(d.layout.quads.size()) - options.size); };
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const double share = 1.0 / static_cast<double>(ways.size()), begin = share * static_cast<double>(k);
+    Found<Decimated> made = found([&] { return decimated(ways[k] * options.size, options, progress.part(begin, begin + share)); });
+    if (!made && best) continue;
+    if (!best || std::pair(excess(*made), made->layout.lacking) < std::pair(excess(*best), best->layout.lacking)) best = std::move(made);
+    if (best && excess(*best) == 0 && best->layout.lacking == 0) break;
+  }
+  if (!best) throw NoMap(best.reason);
+  decimated_ = std::move(*best);
+}
+
+BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOptions& options, const Progress& progress) const {
+  Decimated made{EditMesh(surface_), {}, {}};
   DecimationOptions decimation;
-  // Room for the clean-up of the quads, which merges some of them.
-  decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(2.6 * options.size)});
+  decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(faces)});
+  double area = 0;
+  for (const auto& f : surface_.faces)
+    area += 0.5 * (surface_.points[f[1]] - surface_.points[f[0]]).cross(surface_.points[f[2]] - surface_.points[f[0]]).norm();
+  decimation.curve_edge = std::sqrt(area / std::max(1.0, options.size));
   decimation.seed = options.seed;
-  std::vector<VertexQuadric> quadrics = decimate(decimated_, surface.points, decimation, log_, progress.part(0, 0.8));
+  decimation.features = &features_;
+  std::vector<VertexQuadric> quadrics = decimate(made.mesh, surface_.points, decimation, made.log, progress.part(0, 0.8));
   QuadLayoutOptions layout_options;
   layout_options.size = options.size;
   layout_options.boundary_side = options.boundary_side;
   layout_options.least = options.least;
   layout_options.seed = options.seed;
-  layout_ = make_quad_layout(decimated_, surface.points, std::move(quadrics), layout_options, log_, progress.part(0.8, 1));
+  layout_options.features = &features_;
+  made.layout = make_quad_layout(made.mesh, surface_.points, std::move(quadrics), layout_options, made.log, progress.part(0.8, 1));
+  return made;
 }
 
 int BaseDomain::boundary_sides() const {
   int sides = 0;
-  for (const QuadLayout::Quad& q : layout_.quads)
+  for (const QuadLayout::Quad& q : decimated_.layout.quads)
     for (const QuadLayout::Side& side : q.sides) sides += side.curve < 0;
   return sides;
 }
 
 CutSurface BaseDomain::cut(double vertices_a_quad, const Progress& progress) const {
   CutSurface out;
-  CoarseSurface(surface_, decimated_, log_, vertices_a_quad * quads(), out).cut(decimated_, layout_, progress);
+  CoarseSurface(surface_, decimated_.mesh, features_, decimated_.log, vertices_a_quad * quads(), out)
+      .cut(decimated_.mesh, decimated_.layout, progress);
   return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "layout/base/decimation.h"
+#include "layout/base/mesh_features.h"
 #include "layout/base/quad_layout.h"
 #include "parameterization/patched_surface.h"
 
@@ -25,25 +26,34 @@ struct CutSurface {
   EditMesh collapsed;       // the surface's mesh, as coarse as the coarse surface
   std::vector<int> log;     // the half-edge collapses that made it so; empty if the coarse surface is the surface
   std::vector<int> vertex;  // per point of the coarse surface: that of the surface
+  std::vector<char> sharp;  // per name of an edge of `collapsed`: is it on a feature? Empty: none is
 };
 
 // A quadrilateral base domain for a surface, found by decimating it. The size is not exceeded unless the surface's topology asks for more. Any genus,
-// components, boundary loops. Keeps a reference to the surface, which is scaled to a unit bounding-box diagonal.
+// components, boundary loops. Feature curves are made of its sides, and their corners are nodes. Keeps a reference to the surface, which is scaled to
+// a unit bounding-box diagonal.
 class BaseDomain {
  public:
-  BaseDomain(const TriangleSurface& surface, const BaseDomainOptions& options, const Progress& progress);
+  BaseDomain(const TriangleSurface& surface, const FeatureGraph& features, const BaseDomainOptions& options, const Progress& progress);
 
-  int quads() const { return static_cast<int>(layout_.quads.size()); }
+  int quads() const { return static_cast<int>(decimated_.layout.quads.size()); }
   int boundary_sides() const;
+  bool has_features() const { return !features_.empty(); }
   // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts
   // it along them.
   CutSurface cut(double vertices_a_quad, const Progress& progress) const;
 
  private:
+  struct Decimated {
+    EditMesh mesh;
+    std::vector<MeshEdit> log;
+    QuadLayout layout;
+  };
+  Decimated decimated(double faces, const BaseDomainOptions& options, const Progress& progress) const;
+
   const TriangleSurface& surface_;
-  EditMesh decimated_;
-  std::vector<MeshEdit> log_;
-  QuadLayout layout_;
+  MeshFeatures features_;
+  Decimated decimated_;
 };
 
 }  // namespace hybrid_mesh

@@ -10,6 +10,12 @@ namespace hybrid_mesh {
 
 PatchedSurface CurveNetwork::cut() {
   PatchedSurface out;
+  std::vector<char> is_node(points_.size(), 0);
+  for (const int v : layout_.node_vertex)
+    if (v >= 0) is_node[v] = 1;
+  std::vector<std::vector<int>> chains(layout_.curves.size());
+  for (std::size_t c = 0; c < chains.size(); ++c)
+    if (is_feature(static_cast<int>(c))) chains[c] = follow_feature(static_cast<int>(c), is_node);
   TriangleSurface& fine = out.mesh;
   fine.points = points_;
   for (std::size_t v = 0; v < points_.size(); ++v) out.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
@@ -73,9 +79,12 @@ PatchedSurface CurveNetwork::cut() {
       if (s.curve >= 0) beside[s.curve][s.forward ? 0 : 1] = {q, i};
     }
   // A half-edge along a curve runs with it if it leads from an earlier to a later point.
-  std::vector<std::vector<int>> chains(layout_.curves.size());
   std::vector<int> rank(fine.points.size(), 0);
   for (std::size_t c = 0; c < chains.size(); ++c) {
+    if (is_feature(static_cast<int>(c))) {
+      for (std::size_t k = 1; k + 1 < chains[c].size(); ++k) rank[chains[c][k]] = static_cast<int>(k);
+      continue;
+    }
     chains[c].push_back(layout_.curves[c].start);
     for (int n = first_[c]; n >= 0; n = crossings_[n].next) {
       rank[point_of[n]] = static_cast<int>(chains[c].size());
@@ -90,10 +99,6 @@ PatchedSurface CurveNetwork::cut() {
   };
   std::vector<std::array<std::vector<int>, 4>> sides(quads);
   // Boundary sides: from a node's vertex along the boundary to the next node.
-  std::vector<char> is_node(points_.size(), 0);
-  std::vector<int> vertex_of_node = layout_.node_vertex;
-  for (const int v : layout_.node_vertex)
-    if (v >= 0) is_node[v] = 1;
   std::vector<int> boundary_from(fine.points.size(), -1);
   for (int h = 0; h < static_cast<int>(fine.opposite.size()); ++h)
     if (fine.opposite[h] < 0) boundary_from[fine.from(h)] = h;
@@ -176,11 +181,14 @@ PatchedSurface CurveNetwork::cut() {
   out.neighbours.resize(quads);
   out.sides = std::move(sides);
   out.node_count = static_cast<int>(layout_.node_vertex.size());
+  if (!features_.empty()) out.sharp.resize(quads);
+  for (std::size_t v = 0; v < points_.size() && !features_.empty(); ++v) out.sharp_corner.push_back(features_.is_corner(static_cast<int>(v)));
   for (int q = 0; q < quads; ++q) {
     out.nodes[q] = layout_.quads[q].nodes;
     for (int i = 0; i < 4; ++i) {
       const QuadLayout::Side& s = layout_.quads[q].sides[i];
       if (s.curve >= 0) out.neighbours[q][i] = beside[s.curve][s.forward ? 1 : 0];
+      if (s.curve >= 0 && is_feature(s.curve)) out.sharp[q][i] = 1;
     }
   }
   return out;

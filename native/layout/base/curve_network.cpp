@@ -16,25 +16,61 @@ namespace hybrid_mesh {
 void CurveNetwork::undo_collapse(int h) {
   mesh_.undo_collapse(h);
   const int v = mesh_.from(h);
-  // The star of v from u = to(h) on. Its spokes but those to u and to the two apexes had the same names when they started at u: those edges vanish.
-  const bool closed = !mesh_.is_boundary(v);
+  if (!features_.is_on_curve(v)) {
+    put_back(h, h, !mesh_.is_boundary(v), h);
+    return;
+  }
+  // No curve crosses a feature: what is on either side of it is by itself, as at a boundary.
+  const std::vector<int> along = features_.along(mesh_, v);
+  const int other = along[0] == h ? along[1] : along[0];
+  put_back(h, other, false, h);
+  put_back(other, h, false, h);
+}
+
+// Draws the curves anew in the star of a vertex that has come back, or in the part of it between two half-edges. `kept` leads to where it was.
+void CurveNetwork::put_back(int first, int last, bool closed, int kept) {
+  const int v = mesh_.from(first);
   ring_.clear(), sides_.clear(), spokes_.clear();
-  int g = h;
+  int g = first;
   do {
     spokes_.push_back(g);
     ring_.push_back(mesh_.to(g));
     sides_.push_back(EditMesh::next(g));
     const int n = mesh_.ccw(g);
-    if (n < 0) {
+    if (n < 0 || (n == last && !closed)) {
       ring_.push_back(mesh_.apex(g));
       break;
     }
     g = n;
-  } while (g != h);
-  const int last = static_cast<int>(spokes_.size()) - (closed ? 2 : 1);
-  for (int i = 2; i <= last; ++i) clear_edge(mesh_.edge[spokes_[i]]);
+  } while (g != last);
+  // Its edges but those to `kept` and to the two apexes had the same names when they started at to(kept): those edges vanish.
+  const int apex = mesh_.apex(kept), other_apex = mesh_.opposite[kept] >= 0 ? mesh_.apex(mesh_.opposite[kept]) : -1;
+  for (const int s : spokes_)
+    if (s != kept && mesh_.to(s) != apex && mesh_.to(s) != other_apex && !features_.on(mesh_, s)) clear_edge(mesh_.edge[s]);
   collect(closed);
   if (!chords_.empty()) insert_vertex(v, closed);
+}
+
+// The points of a layout's curve that runs along a feature.
+std::vector<int> CurveNetwork::follow_feature(int c, const std::vector<char>& is_node) {
+  const int name = layout_.curves[c].edge;
+  const int h = static_cast<int>(std::find(mesh_.edge.begin(), mesh_.edge.end(), name) - mesh_.edge.begin());
+  std::vector<int> chain;
+  for (const int start : {h, mesh_.opposite[h]}) {
+    int g = start;
+    along_edge_[mesh_.edge[g]] = c;
+    std::vector<int> half{mesh_.to(g)};
+    while (!is_node[half.back()]) {
+      const std::vector<int> along = features_.along(mesh_, half.back());
+      g = mesh_.edge[along[0]] == mesh_.edge[g] ? along[1] : along[0];
+      along_edge_[mesh_.edge[g]] = c;
+      half.push_back(mesh_.to(g));
+    }
+    std::reverse(chain.begin(), chain.end());
+    chain.insert(chain.end(), half.begin(), half.end());
+  }
+  if (chain.front() != layout_.curves[c].start) std::reverse(chain.begin(), chain.end());
+  return chain;
 }
 
 void CurveNetwork::insert_vertex(int v, bool closed) {
@@ -226,9 +262,9 @@ void CurveNetwork::draw(const std::vector<Vec2>& uv) {
   }
 }
 
-PatchedSurface cut_along_layout(const TriangleSurface& surface, EditMesh& mesh, const std::vector<MeshEdit>& log, const QuadLayout& layout,
-                                const Progress& progress) {
-  CurveNetwork network(surface, mesh, layout);
+PatchedSurface cut_along_layout(const TriangleSurface& surface, EditMesh& mesh, const MeshFeatures& features, const std::vector<MeshEdit>& log,
+                                const QuadLayout& layout, const Progress& progress) {
+  CurveNetwork network(surface, mesh, features, layout);
   for (std::size_t i = log.size(); i-- > 0;) {
     if (i % 1024 == 0) progress(0.7 * (1 - static_cast<double>(i) / log.size()));
     network.undo(log[i]);
@@ -241,7 +277,8 @@ PatchedSurface cut_along_layout(const TriangleSurface& surface, EditMesh& mesh, 
 
 PatchedSurface cut_along_segments(const TriangleSurface& disk, const std::vector<Vec2>& uv, const QuadLayout& layout) {
   EditMesh mesh(disk);
-  CurveNetwork network(disk, mesh, layout);
+  const MeshFeatures none;
+  CurveNetwork network(disk, mesh, none, layout);
   network.draw(uv);
   return network.cut();
 }

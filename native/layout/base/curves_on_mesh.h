@@ -21,12 +21,18 @@ struct Crossing {
 
 class CurveNetwork {
  public:
-  CurveNetwork(const TriangleSurface& surface, EditMesh& mesh, const QuadLayout& layout)
-      : surface_(surface), points_(surface.points), mesh_(mesh), layout_(layout), on_edge_(mesh.edge_count), along_edge_(mesh.edge_count, -1) {
+  CurveNetwork(const TriangleSurface& surface, EditMesh& mesh, const MeshFeatures& features, const QuadLayout& layout)
+      : surface_(surface),
+        points_(surface.points),
+        mesh_(mesh),
+        features_(features),
+        layout_(layout),
+        on_edge_(mesh.edge_count),
+        along_edge_(mesh.edge_count, -1) {
     first_.assign(layout.curves.size(), -1);
     last_.assign(layout.curves.size(), -1);
     for (std::size_t c = 0; c < layout.curves.size(); ++c)
-      if (layout.curves[c].edge >= 0) along_edge_[layout.curves[c].edge] = static_cast<int>(c);
+      if (layout.curves[c].edge >= 0 && !is_feature(static_cast<int>(c))) along_edge_[layout.curves[c].edge] = static_cast<int>(c);
   }
 
   // Lays the curves on straight segments in the plane, where the mesh's vertices lie at `uv`.
@@ -42,6 +48,8 @@ class CurveNetwork {
   PatchedSurface cut();
 
  private:
+  // Does the layout's curve run along a feature? Such a curve has no crossings: it is followed once the mesh is the fine one again.
+  bool is_feature(int c) const { return !features_.empty() && layout_.curves[c].edge >= 0 && features_.curves()[layout_.curves[c].edge] >= 0; }
   struct Station {
     int corner = -1;    // index in the ring, or -1
     int crossing = -1;  // or a crossing on the ring's edge
@@ -214,7 +222,9 @@ class CurveNetwork {
   }
 
   void undo_collapse(int h);
+  void put_back(int first, int last, bool closed, int kept);
   void undo_flip(int h);
+  std::vector<int> follow_feature(int c, const std::vector<char>& is_node);
   void insert_vertex(int v, bool closed);
 
   static int split_boundary_edge(PatchedSurface& out, int h);
@@ -222,6 +232,7 @@ class CurveNetwork {
   const TriangleSurface& surface_;
   const std::vector<Vec3>& points_;
   EditMesh& mesh_;
+  const MeshFeatures& features_;
   const QuadLayout& layout_;
   std::vector<Crossing> crossings_;
   std::vector<int> free_;

@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "layout/base/closed_components.h"
+#include "layout/base/curve_classes.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -27,6 +30,8 @@ struct Candidate {
 };
 // The heap's order: the cheapest on top. Costs may tie, vertices do not.
 bool is_dearer(const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost > b.cost : a.vertex > b.vertex; }
+
+constexpr int kLeastOfClosedCurve = 4;  // edges: with fewer the quads beside it have straight corners
 
 // When so many times the faces asked for are left, flips begin.
 constexpr double kFlipFaces = 12;
@@ -46,8 +51,8 @@ class Decimation {
   Decimation(EditMesh& mesh, const std::vector<Vec3>& points, const DecimationOptions& options, std::vector<MeshEdit>& log)
       : mesh_(mesh), points_(points), options_(options), log_(log), quadrics_(points.size()), components_(closed_components(mesh)) {
     valences_.assign(points.size(), 0);
-    if (options.fixed.empty()) loop_ = mesh.boundary_loops();
-    if (std::all_of(loop_.begin(), loop_.end(), [](int loop) { return loop < 0; })) loop_.clear();
+    if (options.fixed.empty()) find_loops();
+    if (!features().empty()) count_curve_vertices();
     queued_.assign(points.size(), Queued::No);
     stamps_.assign(points.size(), 0);
     for (std::size_t f = 0; f < mesh.alive.size(); ++f)
@@ -82,6 +87,7 @@ class Decimation {
         refill();
       }
     }
+    if (!features().empty()) balance_curves();
     flips();
     progress(1);
   }
@@ -89,6 +95,91 @@ class Decimation {
   std::vector<VertexQuadric> take_quadrics() { return std::move(quadrics_); }
 
  private:
+  const MeshFeatures& features() const {
+    static const MeshFeatures none;
+    return options_.features ? *options_.features : none;
+  }
+
+  // Boundary loops and feature curves that meet have one number.
+  void find_loops() {
+    loop_ = mesh_.boundary_loops();
+    if (!features().empty()) {
+      DisjointSets sets(points_.size());
+      for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h)
+        if (mesh_.alive[h / 3] && (mesh_.opposite[h] < 0 || features().on(mesh_, h))) sets.join(mesh_.from(h), mesh_.to(h));
+      for (int v = 0; v < static_cast<int>(points_.size()); ++v) loop_[v] = loop_[v] >= 0 || features().is_on_curve(v) ? sets.find(v) : -1;
+    }
+    if (std::all_of(loop_.begin(), loop_.end(), [](int loop) { return loop < 0; })) loop_.clear();
+  }
+
+  void count_curve_vertices() {
+    on_curve_.assign(features().curve_count(), 0);
+    closed_.assign(features().curve_count(), 1);
+    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h)
+      if (mesh_.alive[h / 3] && mesh_.opposite[h] > h && features().on(mesh_, h)) {
+        const int curve = features().curves()[mesh_.edge[h]];
+        ++on_curve_[curve];  // as many edges as vertices, but one more with corners
+        for (const int v : {mesh_.from(h), mesh_.to(h)})
+          if (features().is_corner(v)) closed_[curve] = 0;
+      }
+    for (std::size_t c = 0; c < on_curve_.size(); ++c) on_curve_[c] -= !closed_[c];
+  }
+  // Opposite sides get the same number of edges, curves edges of the length that they are to have, and pieces between curves an even number of
+  // triangles.
+  void balance_curves() {
+    const auto shorten_to = [&](const CurveClasses& classes, const std::vector<int>& wanted) {
+      for (std::size_t k = 0; k < wanted.size(); ++k)
+        for (const int c : classes.curves[k])
+          for (int n = classes.edges[c]; n > wanted[k] && shorten(c); --n) {
+          }
+    };
+    std::vector<int> wanted;
+    CurveClasses classes = curve_classes(mesh_, points_, features());
+    for (const std::vector<int>& curves : classes.curves) {
+      wanted.push_back(std::numeric_limits<int>::max());
+      for (const int c : curves) wanted.back() = std::min(wanted.back(), classes.edges[c]);
+    }
+    shorten_to(classes, wanted);
+    classes = curve_classes(mesh_, points_, features());
+    wanted.clear();
+    for (const std::vector<int>& curves : classes.curves) {
+      wanted.push_back(classes.edges[curves[0]]);
+      double length = 0;
+      for (const int c : curves) length += classes.length[c] / static_cast<double>(curves.size());
+      const int least = std::min(wanted.back(), closed_[curves[0]] ? kLeastOfClosedCurve : 1);
+      wanted.back() = std::clamp(static_cast<int>(std::lround(length / options_.curve_edge)), least, wanted.back());
+    }
+    classes.make_even(wanted);
+    shorten_to(classes, wanted);
+  }
+  // Takes the cheapest vertex away from a curve.
+  bool shorten(int curve) {
+    double least = std::numeric_limits<double>::infinity();
+    int best = -1;
+    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
+      if (!mesh_.alive[h / 3] || !features().on(mesh_, h) || features().curves()[mesh_.edge[h]] != curve) continue;
+      if (!features().can_collapse(mesh_, h) || !mesh_.can_collapse(h)) continue;
+      gather(mesh_.from(h), star_);
+      for (std::size_t i = 0; i < star_.spokes.size(); ++i)
+        if (star_.spokes[i].half_edge == h) {
+          const double cost = full_cost(least_cost(mesh_.from(h), star_, i), mesh_.from(h), star_, i) * (features().keeps_room(mesh_, h) ? 1 : 1e3);
+          if (cost < least) least = cost, best = h;
+        }
+    }
+    if (best < 0) return false;
+    apply(best);
+    return true;
+  }
+
+  // Does the collapse keep the curves, and to each a vertex more than it needs? That one can go where the triangles beside it are to be paired.
+  bool keeps_curves(int h) const {
+    if (features().empty()) return true;
+    if (!features().can_collapse(mesh_, h) || !features().keeps_room(mesh_, h)) return false;
+    if (!features().is_on_curve(mesh_.from(h))) return true;
+    const int curve = features().curves()[mesh_.edge[h]];
+    return on_curve_[curve] > (closed_[curve] ? 3 : 0) + 1;
+  }
+
   void add_face(int f) {
     const int h = 3 * f;
     const Vec3 &a = points_[mesh_.from(h)], &b = points_[mesh_.to(h)], &c = points_[mesh_.apex(h)];
@@ -203,7 +294,7 @@ class Decimation {
   Candidate cheapest(int v, Star& star) const {
     Candidate best;
     best.vertex = v;
-    if (!options_.fixed.empty() && options_.fixed[v]) return best;
+    if ((!options_.fixed.empty() && options_.fixed[v]) || features().is_corner(v)) return best;
     gather(v, star);
     // A boundary vertex moves along its outgoing boundary edge.
     const std::size_t ways = mesh_.is_boundary(v) ? 1 : star.spokes.size();
@@ -213,6 +304,7 @@ class Decimation {
     for (const auto& [bound, i] : star.bounds) {
       if (bound > best.cost) break;
       const int h = star.spokes[i].half_edge;
+      if (!keeps_curves(h)) continue;
       const double cost = full_cost(bound, v, star, i);
       // The topological test is dearer than the cost.
       if (!(cost < best.cost || (cost == best.cost && h < best.half_edge)) || !mesh_.can_collapse(h) || makes_chord(h, star.around)) continue;
@@ -289,12 +381,15 @@ class Decimation {
   }
 
   void collapse(int h) {
-    if (!mesh_.can_collapse(h) || makes_chord(h, star_.around)) return;
+    if (mesh_.can_collapse(h) && keeps_curves(h) && !makes_chord(h, star_.around)) apply(h);
+  }
+  void apply(int h) {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
     if (const int c = components_.of[v]; c >= 0) {
       if (components_.faces[c] - 2 < kLeastClosedFaces) return;
       components_.faces[c] -= 2;
     }
+    if (features().is_on_curve(v)) --on_curve_[features().curves()[mesh_.edge[h]]];
     valences_[u] += valences_[v] - (mesh_.is_boundary(v) ? 3 : 4);
     --valences_[mesh_.apex(h)];
     if (o >= 0) --valences_[mesh_.apex(o)];
@@ -322,11 +417,18 @@ class Decimation {
     if (!(m1.dot(mean) > 0) || !(m2.dot(mean) > 0)) return -1;
     const double dihedral = m1.normalized().dot(m2.normalized()) - n1.dot(n2);
     const double delaunay = (angle(C, A, B) + angle(D, A, B)) - (angle(A, C, D) + angle(B, C, D));
-    const auto misfit = [&](int w, int change) {
-      const double x = valences_[w] + change - (mesh_.is_boundary(w) ? 4 : 6);
-      return x * x;
+    // What is won at the start of a half-edge by so many edges more beside it.
+    const auto won = [&](int g, int change) {
+      const int w = mesh_.from(g);
+      double x = valences_[w] - (mesh_.is_boundary(w) ? 4 : 6);
+      if (features().is_on_curve(w)) {
+        const MeshFeatures::Sector sector = features().sector(mesh_, g);
+        x = MeshFeatures::sector_triangles(mesh_, sector) -
+            std::max(1.0, std::round(features().sector_angle(mesh_, points_, sector) * 3 / std::numbers::pi));
+      }
+      return x * x - (x + change) * (x + change);
     };
-    const double valence = misfit(a, 0) + misfit(b, 0) + misfit(c, 0) + misfit(d, 0) - misfit(a, -1) - misfit(b, -1) - misfit(c, 1) - misfit(d, 1);
+    const double valence = won(h, -1) + won(o, -1) + won(EditMesh::prev(h), 1) + won(EditMesh::prev(o), 1);
     return 0.15 * valence + 0.5 * delaunay + 2 * dihedral;
   }
 
@@ -339,7 +441,7 @@ class Decimation {
       int count = 0;
       for (const int h : halves) {
         if (mesh_.opposite[h] < h) continue;
-        if (flip_gain(h) <= 0.05 || !mesh_.can_flip(h)) continue;
+        if (!features().can_flip(mesh_, h) || flip_gain(h) <= 0.05 || !mesh_.can_flip(h)) continue;
         --valences_[mesh_.from(h)], --valences_[mesh_.to(h)];
         ++valences_[mesh_.apex(h)], ++valences_[mesh_.apex(mesh_.opposite[h])];
         mesh_.flip(h);
@@ -362,7 +464,9 @@ class Decimation {
   std::vector<Candidate> heap_;
   Star star_;
   std::vector<int> ring_;
-  std::vector<int> loop_;  // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
+  std::vector<int> on_curve_;  // per feature curve: its vertices, but corners
+  std::vector<char> closed_;   // per feature curve
+  std::vector<int> loop_;      // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
   bool flipped_ = false;
   int loose_ = 0;
 };

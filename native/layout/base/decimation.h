@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "layout/base/mesh_features.h"
 #include "layout/base/quadric.h"
 #include "surface/edit_mesh.h"
 
@@ -23,6 +24,8 @@ struct DecimationOptions {
   std::uint64_t seed = 1;   // breaks near-ties only
   std::vector<char> fixed;  // per vertex: stays; all other boundary vertices go, whatever the number of faces. Empty: none is fixed, and the boundary
                             // is simplified with the rest
+  const MeshFeatures* features = nullptr;  // curves that stay; the faces between them stay even in number where they can be paired
+  double curve_edge = 0;                   // how long the edges of curves are to be
 };
 
 // Collapses and flips `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are

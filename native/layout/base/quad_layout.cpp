@@ -11,21 +11,22 @@
 #include <set>
 
 #include "layout/base/closed_components.h"
+#include "layout/base/quad_pairs.h"
 #include "layout/base/triangle_pairing.h"
 
 namespace hybrid_mesh {
 namespace {
 
-struct Corners {
-  std::array<int, 4> v;
-};
+// What a pair of triangles across a feature costs, which no badness of a quad comes near.
+constexpr double kAcross = 1000;
+constexpr double kLacking = 100;  // what it costs that a node on a feature gets a straight corner: more than any distance or shape
+constexpr double kStuck = 100;    // times that, where the edge between them cannot be collapsed
 
-class QuadCoarsening {
+class QuadCoarsening : private QuadPairs {
  public:
   QuadCoarsening(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,
                  std::vector<MeshEdit>& log)
-      : mesh_(mesh),
-        points_(points),
+      : QuadPairs(mesh, points, options.features, options.boundary_quads),
         quadrics_(std::move(quadrics)),
         options_(options),
         log_(log),
@@ -34,7 +35,7 @@ class QuadCoarsening {
 
   QuadLayout run(const Progress& progress) {
     list_live();
-    pair();
+    pair_within_features();
     double area = 0;
     for (const int v : vertices_) area += quadrics_[v].area;
     side_ = std::sqrt(area / std::max(1.0, options_.size));
@@ -56,6 +57,16 @@ class QuadCoarsening {
   }
 
  private:
+  struct DiagonalCollapse {
+    double cost = 1e300;
+    int from = -1, to = -1, face = -1;
+  };
+  // Of a face, until something changes near it.
+  struct Known {
+    bool rests = false;      // no side of it is worth rotating
+    bool collapses = false;  // the ways to collapse its quad are known
+    std::array<DiagonalCollapse, 4> ways;
+  };
   struct State {
     std::size_t log = 0;
     std::vector<int> faces, mate, split;  // of the live faces
@@ -78,6 +89,7 @@ class QuadCoarsening {
     faces_ = state.faces;
     vertices_ = state.vertices;
     for (std::size_t i = 0; i < faces_.size(); ++i) mate_[faces_[i]] = state.mate[i], split_[faces_[i]] = state.split[i];
+    for (const int f : faces_) known(f) = {};
     for (std::size_t i = 0; i < vertices_.size(); ++i) quadrics_[vertices_[i]] = state.quadrics[i];
   }
 
@@ -94,20 +106,7 @@ class QuadCoarsening {
     std::erase_if(vertices_, [&](int v) { return !mesh_.vertex_alive(v); });
   }
 
-  // --- quads as pairs of triangles -------------------------------------------------------------------------------------------
-  bool is_pair(int f) const { return mate_[f] != f; }
-  int diagonal(int f) const {
-    for (int h = 3 * f; h < 3 * f + 3; ++h)
-      if (mesh_.opposite[h] >= 0 && mesh_.opposite[h] / 3 == mate_[f]) return h;
-    return -1;
-  }
-  bool is_diagonal(int h) const { return mesh_.opposite[h] >= 0 && is_pair(h / 3) && mate_[h / 3] == mesh_.opposite[h] / 3; }
-  // The quad's corners from `start` half-edge (not a diagonal), counter-clockwise.
-  Corners corners(int h) const {
-    const int n = EditMesh::next(h), p = EditMesh::prev(h);
-    if (is_diagonal(n)) return {{mesh_.from(h), mesh_.to(h), mesh_.apex(mesh_.opposite[n]), mesh_.apex(h)}};
-    return {{mesh_.from(h), mesh_.to(h), mesh_.apex(h), mesh_.apex(mesh_.opposite[p])}};
-  }
+  // --- counts -----------------------------------------------------------------------------------------------------------
   int quad_count() const {
     int faces = 0;
     for (const int f : faces_) faces += is_pair(f) ? 1 : 2;
@@ -126,35 +125,14 @@ class QuadCoarsening {
       for (int h = 3 * f; h < 3 * f + 3; ++h) sides += mesh_.opposite[h] < 0 ? (split_[f] == h ? 2 : 1) : 0;
     return quad_count() + options_.boundary_side * sides;
   }
-  // Number of quads around a vertex less the regular number (4 inside, 2 at the boundary).
-  int excess(int v) const {
-    int edges = 0;
-    int h = mesh_.out[v];
-    do {
-      if (!is_diagonal(h)) ++edges;
-      const int n = mesh_.ccw(h);
-      if (n < 0) return edges - (options_.boundary_quads.empty() ? 2 : options_.boundary_quads[v]);
-      h = n;
-    } while (h != mesh_.out[v]);
-    return edges - 4;
-  }
-  static double valence_energy(int excess) { return excess * excess + (excess > 2 || excess < -1 ? 4.0 : 0.0); }
-
-  // 0 for a square; grows with corners away from right angles, folds and elongation.
-  double badness(const std::array<int, 4>& q) const {
-    std::array<Vec3, 4> p;
-    for (int i = 0; i < 4; ++i) p[i] = points_[q[i]];
-    const Vec3 n = (p[2] - p[0]).cross(p[3] - p[1]);
-    double sum = 0;
-    std::array<double, 4> length;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 a = p[(i + 1) % 4] - p[i], b = p[(i + 3) % 4] - p[i];
-      length[i] = a.norm();
-      const double l = std::sqrt(a.squaredNorm() * b.squaredNorm() * n.squaredNorm());
-      sum += 1 - (l > 0 ? a.cross(b).dot(n) / l : -1.0);
+  void pair_within_features() {
+    // What stays collapsed leaves other pairs to choose from.
+    constexpr int tries = 6;
+    for (int k = 0; k < tries; ++k) {
+      pair();
+      if (!collapse_pairs_across()) return;
     }
-    const double aspect = std::log(std::max(1e-9, length[0] + length[2]) / std::max(1e-9, length[1] + length[3]));
-    return sum + aspect * aspect;
+    throw NoMap("the triangles between sharp edges cannot be paired");
   }
 
   void pair() {
@@ -170,7 +148,8 @@ class QuadCoarsening {
           if (!options_.boundary_quads.empty()) continue;
           candidates.push_back({index[f], -1, -10.0});
         } else {
-          const double b = badness({mesh_.from(h), mesh_.apex(o), mesh_.to(h), mesh_.apex(h)});
+          double b = badness({mesh_.from(h), mesh_.apex(o), mesh_.to(h), mesh_.apex(h)});
+          b = features_.on(mesh_, h) ? cost_across(h) : b + diagonal_energy(h) + diagonal_energy(o);
           candidates.push_back({index[f], index[o / 3], -b});
         }
         halves.push_back(h);
@@ -178,6 +157,9 @@ class QuadCoarsening {
     const std::vector<int> choice = pair_triangles(static_cast<int>(faces_.size()), candidates);
     mate_.assign(mesh_.alive.size(), -1);
     split_.assign(mesh_.alive.size(), -1);
+    slot_.assign(mesh_.alive.size(), -1);
+    for (std::size_t i = 0; i < faces_.size(); ++i) slot_[faces_[i]] = static_cast<int>(i);
+    known_.assign(faces_.size(), {});
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const PairCandidate& c = candidates[choice[i]];
       const int f = faces_[i];
@@ -190,11 +172,39 @@ class QuadCoarsening {
     }
   }
 
+  // Triangles on both sides of a feature make no quad. Where the number of triangles between features leaves no other way for some, these are taken
+  // away together, with the edge between them.
+  bool can_collapse_on_feature(int h) const { return features_.can_collapse(mesh_, h) && mesh_.can_collapse(h); }
+  double cost_across(int h) const {
+    const double length = (points_[mesh_.to(h)] - points_[mesh_.from(h)]).norm();
+    double least = kStuck;
+    for (const int g : {h, mesh_.opposite[h]})
+      if (can_collapse_on_feature(g)) least = std::min(least, features_.keeps_room(mesh_, g) ? 1.0 : 2.0);
+    return kAcross * (least + length);
+  }
+  // Returns whether there are some left.
+  bool collapse_pairs_across() {
+    bool stuck = false;
+    for (const int f : std::vector<int>(faces_)) {
+      if (!mesh_.alive[f] || !is_pair(f) || !features_.on(mesh_, diagonal(f))) continue;
+      const int h = diagonal(f), o = mesh_.opposite[h];
+      const bool forth = can_collapse_on_feature(h), back = can_collapse_on_feature(o);
+      if (!forth && !back)
+        stuck = true;
+      else
+        collapse(!back || (forth && features_.keeps_room(mesh_, h)) ? h : o);
+    }
+    drop_dead();
+    return stuck;
+  }
+
   // --- local operations ------------------------------------------------------------------------------------------------------
   bool flip(int h) {
     if (!mesh_.can_flip(h)) return false;
+    const std::array<int, 4> corners{mesh_.from(h), mesh_.to(h), mesh_.apex(h), mesh_.apex(mesh_.opposite[h])};
     mesh_.flip(h);
     log_.push_back({MeshEdit::Kind::Flip, h});
+    for (const int v : corners) forget(v);
     return true;
   }
   // Makes the diagonal of f's quad touch vertex v.
@@ -209,11 +219,33 @@ class QuadCoarsening {
     quadrics_[u].area += quadrics_[v].area;
     mesh_.collapse(h);
     log_.push_back({MeshEdit::Kind::Collapse, h});
+    mesh_.ring(u, ring_);
+    forget(u);
+    for (const int w : std::vector<int>(ring_)) forget(w);
+  }
+
+  Known& known(int f) { return known_[slot_[f]]; }
+  template <class Visit>
+  void for_faces_at(int v, const Visit& visit) const {
+    int h = mesh_.out[v];
+    do {
+      visit(h / 3);
+      h = mesh_.ccw(h);
+    } while (h >= 0 && h != mesh_.out[v]);
+  }
+  // What is known of the quads around a vertex, and of those that touch them, holds no longer.
+  void forget(int v) {
+    for_faces_at(v, [&](int f) {
+      for (const int g : {f, mate_[f]}) {
+        if (!mesh_.alive[g]) continue;
+        for (int i = 0; i < 3; ++i) for_faces_at(mesh_.origin[3 * g + i], [&](int near) { known(near) = known(mate_[near]) = {}; });
+      }
+    });
   }
 
   // An interior vertex between two quads only: the quads become one.
   bool remove_doublet(int v) {
-    if (mesh_.is_boundary(v) || excess(v) != -2) return false;
+    if (mesh_.is_boundary(v) || features_.is_on_curve(v) || excess(v) != -2) return false;
     std::vector<int> faces;
     int h = mesh_.out[v];
     do {
@@ -234,6 +266,8 @@ class QuadCoarsening {
           if (mesh_.alive[f]) left.push_back(f);
         mate_[left[0]] = left[1];
         mate_[left[1]] = left[0];
+        for (const int f : left)
+          for (int i = 0; i < 3; ++i) forget(mesh_.origin[3 * f + i]);
         return true;
       }
       h = mesh_.ccw(h);
@@ -250,17 +284,17 @@ class QuadCoarsening {
   Rotation best_rotation(int g) const {
     Rotation best;
     const int o = mesh_.opposite[g];
-    if (o < 0 || is_diagonal(g) || !is_pair(g / 3) || !is_pair(o / 3)) return best;
+    if (o < 0 || features_.on(mesh_, g) || is_diagonal(g) || !is_pair(g / 3) || !is_pair(o / 3)) return best;
     if (mate_[g / 3] == o / 3 || g / 3 == mate_[o / 3]) return best;
     const Corners q1 = corners(g), q2 = corners(o);
     const int a = q1.v[0], d = q1.v[1], e = q1.v[2], f = q1.v[3], b = q2.v[2], c = q2.v[3];
     const std::set<int> distinct{a, b, c, d, e, f};
     if (distinct.size() != 6) return best;
-    const auto energy = [&](int v, int change) { return valence_energy(excess(v) + change); };
+    const auto gained = [&](int h, int change) { return sector_energy(h, 0) - sector_energy(h, change); };
     const double shape = badness(q1.v) + badness(q2.v);
-    const double lost = energy(a, 0) + energy(d, 0) - energy(a, -1) - energy(d, -1);
+    const double lost = gained(g, -1) + gained(o, -1);
     const auto consider = [&](bool left, int x, int y, const std::array<int, 4>& n1, const std::array<int, 4>& n2) {
-      const double valence = lost + energy(x, 0) + energy(y, 0) - energy(x, 1) - energy(y, 1);
+      const double valence = lost + gained(half_at(g / 3, x), 1) + gained(half_at(o / 3, y), 1);
       const double change = shape - badness(n1) - badness(n2);
       const double gain = valence + 1.5 * change;
       if (gain > best.gain + 1e-9) best = {g, left, gain};
@@ -285,17 +319,14 @@ class QuadCoarsening {
       mate_[x] = ym, mate_[ym] = x;
       mate_[y] = xm, mate_[xm] = y;
     }
+    for (const int f : {x, y, xm, ym})
+      for (int i = 0; i < 3; ++i) forget(mesh_.origin[3 * f + i]);
     return true;
   }
 
-  struct DiagonalCollapse {
-    double cost = 1e300;
-    int from = -1, to = -1, face = -1;
-  };
-
   // Merges `from` into `to`, opposite corners of face f's quad.
-  double diagonal_cost(int from, int to, int x, int y) const {
-    if (mesh_.is_boundary(from)) return 1e300;
+  double diagonal_cost(int face, int from, int to, int x, int y) const {
+    if (mesh_.is_boundary(from) || features_.is_on_curve(from)) return 1e300;
     const Vec3& target = points_[to];
     const double area = quadrics_[from].area + quadrics_[to].area;
     double error = (quadrics_[from].planes(target) + quadrics_[to].planes(target)) / std::max(area, 1e-300);
@@ -319,12 +350,17 @@ class QuadCoarsening {
       }
       h = mesh_.ccw(h);
     } while (h != mesh_.out[from]);
-    const int merged = excess(from) + excess(to) + (mesh_.is_boundary(to) ? 1 : 2);
-    const double valence = valence_energy(merged) + valence_energy(excess(x) - 1) + valence_energy(excess(y) - 1) - valence_energy(excess(from)) -
-                           valence_energy(excess(to)) - valence_energy(excess(x)) - valence_energy(excess(y));
-    if (merged > 3) return 1e300;
+    // Quads of `from` that `to` takes over, beside the regular number.
+    const int added = excess(from) + (mesh_.is_boundary(to) && !features_.is_on_curve(to) ? 1 : 2);
+    if (!features_.is_on_curve(to) && excess(to) + added > 3) return 1e300;
+    // The last resort.
+    double lacking = 0;
+    for (const int v : {x, y}) lacking += features_.is_on_curve(v) && lacks_quads(half_at(face, v), 1);
+    const auto change = [&](int v, int by) { return sector_energy(half_at(face, v), by) - sector_energy(half_at(face, v), 0); };
+    const double valence = change(to, added) + change(x, -1) + change(y, -1) - valence_energy(excess(from));
     const double scale = side_ * side_;
-    return error / scale + 0.02 * longest / scale + 0.05 * std::max(0.0, total) + 0.03 * std::max(0.0, worst - 2) + 0.03 * valence;
+    return error / scale + 0.02 * longest / scale + 0.05 * std::max(0.0, total) + 0.03 * std::max(0.0, worst - 2) + 0.03 * valence +
+           kLacking * lacking;
   }
 
   // Collapses the cheapest diagonal that leaves enough quads, and cleans up.
@@ -332,12 +368,17 @@ class QuadCoarsening {
     std::vector<DiagonalCollapse> all;
     for (const int f : faces_) {
       if (!is_pair(f) || mate_[f] < f) continue;
-      const int d = diagonal(f);
-      const int x = mesh_.from(d), y = mesh_.to(d), p = mesh_.apex(d), q = mesh_.apex(mesh_.opposite[d]);
-      all.push_back({diagonal_cost(x, y, p, q), x, y, f});
-      all.push_back({diagonal_cost(y, x, p, q), y, x, f});
-      all.push_back({diagonal_cost(p, q, x, y), p, q, f});
-      all.push_back({diagonal_cost(q, p, x, y), q, p, f});
+      Known& k = known(f);
+      if (!k.collapses) {
+        const int d = diagonal(f);
+        const int x = mesh_.from(d), y = mesh_.to(d), p = mesh_.apex(d), q = mesh_.apex(mesh_.opposite[d]);
+        k.ways = {DiagonalCollapse{diagonal_cost(f, x, y, p, q), x, y, f},
+                  {diagonal_cost(f, y, x, p, q), y, x, f},
+                  {diagonal_cost(f, p, q, x, y), p, q, f},
+                  {diagonal_cost(f, q, p, x, y), q, p, f}};
+        k.collapses = true;
+      }
+      all.insert(all.end(), k.ways.begin(), k.ways.end());
     }
     std::sort(all.begin(), all.end(), [](const DiagonalCollapse& a, const DiagonalCollapse& b) {
       return std::tie(a.cost, a.face, a.from) < std::tie(b.cost, b.face, b.from);
@@ -374,12 +415,18 @@ class QuadCoarsening {
       for (const int v : vertices_)
         if (mesh_.vertex_alive(v) && remove_doublet(v)) changed = true;
       drop_dead();
-      for (const int f : faces_)
+      for (const int f : faces_) {
+        if (known(f).rests) continue;
+        bool rests = true;
         for (int h = 3 * f; h < 3 * f + 3; ++h) {
           if (mesh_.opposite[h] < h) continue;
           const Rotation r = best_rotation(h);
-          if (r.half_edge >= 0 && r.gain > 0.05 && rotate(r)) changed = true;
+          if (r.half_edge < 0 || r.gain <= 0.05) continue;
+          rests = false;
+          if (rotate(r)) changed = true;
         }
+        known(f).rests = rests;
+      }
       if (!changed) return;
     }
   }
@@ -387,6 +434,9 @@ class QuadCoarsening {
   // --- result ----------------------------------------------------------------------------------------------------------------
   QuadLayout layout() const {
     QuadLayout out;
+    for (const int v : vertices_)
+      if (features_.is_on_curve(v))
+        for (const int h : features_.along(mesh_, v)) out.lacking += lacks_quads(h, 0);
     std::vector<int> node(points_.size(), -1);
     for (const int v : vertices_) {
       node[v] = static_cast<int>(out.node_vertex.size());
@@ -424,16 +474,15 @@ class QuadCoarsening {
     return out;
   }
 
-  EditMesh& mesh_;
-  const std::vector<Vec3>& points_;
   std::vector<VertexQuadric> quadrics_;
   const QuadLayoutOptions& options_;
   std::vector<MeshEdit>& log_;
   ClosedComponents components_;        // as the mesh was first
   std::vector<char> finished_;         // per closed component: it has no quad to give away
   std::vector<int> faces_, vertices_;  // that are alive, see list_live()
-  std::vector<int> mate_;              // per face: the other triangle of its quad, or itself
-  std::vector<int> split_;             // per face that is its own mate: the boundary half-edge that holds the fourth node
+  std::vector<int> slot_;              // per face that was there when they were paired: its place in known_
+  std::vector<Known> known_;
+  std::vector<int> ring_;
   double side_ = 1;
 };
 

@@ -26,6 +26,7 @@ struct QuadLayout {
   std::vector<int> node_vertex;  // the mesh's vertex, or -1 for a node between the two ends of a boundary edge
   std::vector<Curve> curves;
   std::vector<Quad> quads;
+  int lacking = 0;  // between features: corners at which there are fewer quads than the angle has room for, so that one has a straight angle
 };
 
 struct QuadLayoutOptions {
@@ -35,6 +36,7 @@ struct QuadLayoutOptions {
   std::uint64_t seed = 1;
   std::vector<int> boundary_quads;  // per vertex on the boundary: how many quads are to meet there; the boundary stays as it is. Empty: two, and
                                     // nodes may be added between
+  const MeshFeatures* features = nullptr;  // curves that stay as they are: quads lie between them
 };
 
 // Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until the

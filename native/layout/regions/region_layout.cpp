@@ -192,7 +192,7 @@ std::optional<DrawnEdit> decimated_edit(const QuadGraph& graph, const PatchRegio
       if (nodes[i] == nodes[(i + 2) % 4] || !joined.insert({nodes[i], nodes[(i + 1) % 4]}).second) return std::nullopt;
     out.edit.quads.push_back(nodes);
   }
-  out.piece = cut_along_layout(disk, mesh, log, layout, progress);
+  out.piece = cut_along_layout(disk, mesh, MeshFeatures(), log, layout, progress);
   return out;
 }
 

@@ -37,6 +37,7 @@ CarriedMap::CarriedMap(const TriangleSurface& surface, CutSurface cut)
       surface_(&surface),
       collapsed_(std::move(cut.collapsed)),
       log_(std::move(cut.log)),
+      sharp_(std::move(cut.sharp)),
       faces_(faces_of(collapsed_)) {}
 
 void CarriedMap::replace(PatchedSurface cut_layout, ChartMesh cut_charts) {
@@ -49,7 +50,7 @@ void CarriedMap::uncut(const GlobalMapOptions& options, const Progress& progress
   if (log_.empty() || !is_cut_) return;
   ChartMesh coarse = charts;
   const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress);
-  charts = ChartMesh(coarse, collapsed_, surface_->points, area_of(*surface_), vertex_of);
+  charts = ChartMesh(coarse, collapsed_, surface_->points, area_of(*surface_), vertex_of, sharp_);
   is_cut_ = false;
   layout.mesh = *surface_;
   layout.patch.clear();

@@ -36,6 +36,7 @@ class CarriedMap {
   bool is_cut_ = true;  // the charts' triangles are parts of the coarse surface's
   EditMesh collapsed_;
   std::vector<int> log_;                   // collapses that made the coarse version
+  std::vector<char> sharp_;                // see CutSurface
   std::vector<std::array<int, 3>> faces_;  // of the coarse version, by number of the surface's face
 };
 

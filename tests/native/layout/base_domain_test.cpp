@@ -104,7 +104,7 @@ TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
       Context context;
       BaseDomainOptions options;
       options.size = size;
-      const BaseDomain base(surface, options, Progress(context));
+      const BaseDomain base(surface, {}, options, Progress(context));
       const PatchedSurface p = base.cut(whole_surface, Progress(context)).patches;
       testing::expect_layout(surface, p);
       // A coarser version of the surface has the same layout.
@@ -127,7 +127,7 @@ TEST(BaseDomain, ReachesTheSizeAskedForWithCleanValences) {
   Context context;
   BaseDomainOptions options;
   options.size = 100;
-  const PatchedSurface p = BaseDomain(surface, options, Progress(context)).cut(whole_surface, Progress(context)).patches;
+  const PatchedSurface p = BaseDomain(surface, {}, options, Progress(context)).cut(whole_surface, Progress(context)).patches;
   EXPECT_LE(p.patch_count(), 100);
   EXPECT_GE(p.patch_count(), 98);
   std::vector<int> valence(p.node_count, 0);
@@ -144,7 +144,7 @@ TEST(BaseDomain, ASeedDecidesNearTiesAndNothingElse) {
   Context context;
   BaseDomainOptions options;
   options.size = 40;
-  const auto make = [&] { return BaseDomain(surface, options, Progress(context)).cut(whole_surface, Progress(context)).patches; };
+  const auto make = [&] { return BaseDomain(surface, {}, options, Progress(context)).cut(whole_surface, Progress(context)).patches; };
   const PatchedSurface a = make(), b = make();
   EXPECT_EQ(a.nodes, b.nodes);
   EXPECT_EQ(a.mesh.faces, b.mesh.faces);
@@ -155,7 +155,7 @@ TEST(BaseDomain, CancelEndsIt) {
   Context context;
   context.cancel();
   try {
-    BaseDomain(surface, BaseDomainOptions(), Progress(context));
+    BaseDomain(surface, {}, BaseDomainOptions(), Progress(context));
     FAIL() << "not cancelled";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::Cancelled);

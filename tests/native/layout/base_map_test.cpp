@@ -24,7 +24,7 @@ BaseDomain base_of(const TriangleSurface& surface, double size) {
   Context context;
   BaseDomainOptions options;
   options.size = size;
-  return BaseDomain(surface, options, Progress(context));
+  return BaseDomain(surface, {}, options, Progress(context));
 }
 
 int irregular_nodes(const PatchedSurface& s) {

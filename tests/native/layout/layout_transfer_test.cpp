@@ -40,7 +40,7 @@ PatchedSurface base_of(const TriangleSurface& surface, double size) {
   Context context;
   BaseDomainOptions options;
   options.size = size;
-  return BaseDomain(surface, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
+  return BaseDomain(surface, {}, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
 }
 
 TransferredLayout transferred(const TriangleSurface& surface, const LayoutOutline& outline) {

@@ -34,7 +34,7 @@ Mapped map_of(const PolygonSoup& soup, double size) {
   Context context;
   BaseDomainOptions options;
   options.size = size;
-  m.patches = BaseDomain(m.surface, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
+  m.patches = BaseDomain(m.surface, {}, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
   const auto corners = map_patches(m.patches, Progress(context));
   m.charts = std::make_unique<ChartMesh>(m.patches, corners);
   return m;

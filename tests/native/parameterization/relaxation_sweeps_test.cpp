@@ -19,7 +19,7 @@ ChartMesh charts_of(const PolygonSoup& soup) {
   Context context;
   BaseDomainOptions options;
   options.size = 40;
-  PatchedSurface patches = BaseDomain(surface, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
+  PatchedSurface patches = BaseDomain(surface, {}, options, Progress(context)).cut(testing::whole_surface, Progress(context)).patches;
   return ChartMesh(patches, map_patches(patches, Progress(context)));
 }
 

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/base/curve_classes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "base/disjoint_sets.h"
+
+namespace hybrid_mesh {
+namespace {
+
+// The surface between curves.
+struct Rims {
+  int inner_vertices = 0, inner_half_edges = 0, faces = 0;
+  bool open = false;
+  std::vector<std::vector<int>> loops;  // of half-edges, the piece on their left
+};
+
+class ClassSearch {
+ public:
+  ClassSearch(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features)
+      : mesh_(mesh), points_(points), features_(features), piece_(mesh.alive.size(), -1), joined_(features.curve_count()) {}
+
+  CurveClasses run() {
+    find_pieces();
+    for (const Rims& rims : rims_) join_opposite(rims);
+    CurveClasses out;
+    out.edges.assign(features_.curve_count(), 0);
+    out.length.assign(features_.curve_count(), 0);
+    std::vector<int> number(features_.curve_count(), -1);
+    for (int c = 0; c < features_.curve_count(); ++c)
+      if (joined_.is_representative(c)) {
+        number[c] = static_cast<int>(out.curves.size());
+        out.curves.emplace_back();
+      }
+    for (int c = 0; c < features_.curve_count(); ++c) out.curves[number[joined_.find(c)]].push_back(c);
+    std::map<std::array<int, 2>, std::vector<int>> sides;  // piece and class: curves
+    for (std::size_t p = 0; p < rims_.size(); ++p) {
+      CurveClasses::Piece& piece = out.pieces.emplace_back();
+      piece.odd = rims_[p].faces % 2 == 1;
+      piece.open = rims_[p].open;
+      std::vector<int> on_rim;
+      for (const std::vector<int>& loop : rims_[p].loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+          const int curve = features_.curves()[mesh_.edge[loop[i]]];
+          out.edges[curve] += 1;
+          out.length[curve] += 0.5 * (points_[mesh_.to(loop[i])] - points_[mesh_.from(loop[i])]).norm();
+          if (i == 0 || curve != features_.curves()[mesh_.edge[loop[i - 1]]] || features_.is_corner(mesh_.from(loop[i]))) on_rim.push_back(curve);
+        }
+      std::vector<int> times(out.curves.size(), 0);
+      for (const int curve : on_rim) ++times[number[joined_.find(curve)]];
+      for (std::size_t k = 0; k < times.size(); ++k)
+        if (times[k] % 2 == 1) piece.classes.push_back(static_cast<int>(k));
+    }
+    for (int& n : out.edges) n /= 2;  // seen from both sides
+    return out;
+  }
+
+ private:
+  void find_pieces() {
+    std::vector<char> seen(mesh_.origin.size(), 0), inner(mesh_.out.size(), 0);
+    std::vector<int> stack;
+    for (int first = 0; first < static_cast<int>(mesh_.alive.size()); ++first) {
+      if (!mesh_.alive[first] || piece_[first] >= 0) continue;
+      Rims& rims = rims_.emplace_back();
+      const int number = static_cast<int>(rims_.size()) - 1;
+      std::vector<int> rim;
+      piece_[first] = number;
+      stack.push_back(first);
+      while (!stack.empty()) {
+        const int f = stack.back();
+        stack.pop_back();
+        ++rims.faces;
+        for (int h = 3 * f; h < 3 * f + 3; ++h) {
+          const int o = mesh_.opposite[h], v = mesh_.from(h);
+          if (!features_.is_on_curve(v) && !mesh_.is_boundary(v) && !inner[v]) inner[v] = 1, ++rims.inner_vertices;
+          if (o < 0) rims.open = true;
+          if (o < 0 || features_.on(mesh_, h)) {
+            if (o >= 0) rim.push_back(h);
+            continue;
+          }
+          ++rims.inner_half_edges;
+          if (piece_[o / 3] >= 0) continue;
+          piece_[o / 3] = number;
+          stack.push_back(o / 3);
+        }
+      }
+      for (const int start : rim) {
+        if (seen[start] || rims.open) continue;
+        std::vector<int>& loop = rims.loops.emplace_back();
+        for (int h = start; !seen[h];) {
+          seen[h] = 1;
+          loop.push_back(h);
+          h = EditMesh::next(h);
+          while (!features_.on(mesh_, h)) h = EditMesh::next(mesh_.opposite[h]);
+        }
+      }
+      // Of an open piece, curves matter for their length alone.
+      if (rims.open && !rim.empty()) rims.loops.push_back(rim);
+    }
+  }
+
+  // 1 at a corner of about a right angle, 2 where the rim goes straight on, more where it turns outwards.
+  int quads_at(int h) const {
+    if (!features_.is_corner(mesh_.from(h))) return 2;
+    const double angle = features_.sector_angle(mesh_, points_, features_.sector(mesh_, h));
+    return std::max(1, static_cast<int>(std::lround(angle / (0.5 * std::numbers::pi))));
+  }
+
+  void join_opposite(const Rims& rims) {
+    if (rims.open) return;
+    const int euler = rims.inner_vertices - rims.inner_half_edges / 2 + rims.faces;
+    // The curves between corners, side by side.
+    std::vector<std::vector<int>> sides;
+    for (const std::vector<int>& loop : rims.loops) {
+      std::size_t first = 0;
+      int corners = 0;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const int quads = quads_at(loop[i]);
+        if (quads > 2) return;
+        if (quads == 1 && corners++ == 0) first = i;
+      }
+      if (corners == 0) sides.emplace_back();
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        const int h = loop[(first + k) % loop.size()], curve = features_.curves()[mesh_.edge[h]];
+        if (quads_at(h) == 1) sides.emplace_back();
+        if (sides.back().empty() || sides.back().back() != curve) sides.back().push_back(curve);
+      }
+    }
+    if (std::any_of(sides.begin(), sides.end(), [](const std::vector<int>& side) { return side.size() != 1; })) return;
+    if (rims.loops.size() == 1 && euler == 1 && sides.size() == 4) {
+      joined_.join(sides[0][0], sides[2][0]);
+      joined_.join(sides[1][0], sides[3][0]);
+    } else if (rims.loops.size() == 2 && euler == 0 && sides.size() == 2) {
+      joined_.join(sides[0][0], sides[1][0]);
+    }
+  }
+
+  const EditMesh& mesh_;
+  const std::vector<Vec3>& points_;
+  const MeshFeatures& features_;
+  std::vector<int> piece_;  // per face
+  std::vector<Rims> rims_;
+  DisjointSets joined_;  // curves
+};
+
+}  // namespace
+
+void CurveClasses::make_even(std::vector<int>& wanted) const {
+  std::vector<char> odd, usable;
+  for (const Piece& piece : pieces) {
+    odd.push_back(piece.odd);
+    for (const int k : piece.classes) odd.back() ^= (edges[curves[k][0]] - wanted[k]) & 1;
+  }
+  const auto most = [&](int k) { return edges[curves[k][0]]; };
+  for (std::size_t k = 0; k < curves.size(); ++k) usable.push_back(wanted[k] > 1 || wanted[k] < most(static_cast<int>(k)));
+  for (std::vector<int> way = way_to_even(odd, usable); !way.empty(); way = way_to_even(odd, usable))
+    for (const int k : way) {
+      wanted[k] += wanted[k] < most(k) ? 1 : -1;
+      usable[k] = 0;
+      for (std::size_t p = 0; p < pieces.size(); ++p) odd[p] ^= std::count(pieces[p].classes.begin(), pieces[p].classes.end(), k) > 0;
+    }
+}
+
+// The classes on the way from an odd piece to the nearest other one.
+std::vector<int> CurveClasses::way_to_even(const std::vector<char>& odd, const std::vector<char>& usable) const {
+  std::vector<std::vector<int>> pieces_of(curves.size());
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    for (const int k : pieces[p].classes)
+      if (usable[k]) pieces_of[k].push_back(static_cast<int>(p));
+  for (std::size_t start = 0; start < pieces.size(); ++start) {
+    if (!odd[start] || pieces[start].open) continue;
+    // Breadth first.
+    std::vector<int> by(pieces.size(), -1), before(pieces.size(), -1), queue{static_cast<int>(start)};
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      int p = queue[i];
+      if (i > 0 && (odd[p] || pieces[p].open)) {
+        std::vector<int> way;
+        for (; p != static_cast<int>(start); p = before[p]) way.push_back(by[p]);
+        return way;
+      }
+      for (const int k : pieces[p].classes) {
+        if (!usable[k] || pieces_of[k].size() != 2) continue;
+        const int other = pieces_of[k][0] == p ? pieces_of[k][1] : pieces_of[k][0];
+        if (other == static_cast<int>(start) || by[other] >= 0) continue;
+        by[other] = k, before[other] = p;
+        queue.push_back(other);
+      }
+    }
+  }
+  return {};
+}
+
+CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features) {
+  return ClassSearch(mesh, points, features).run();
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout/base/quad_pairs.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hybrid_mesh {
+namespace {
+
+double energy_of(int quads, int regular) {
+  // One quad alone would have a straight angle for a corner.
+  constexpr double straight = 10;
+  return QuadPairs::valence_energy(quads - regular) + (quads < regular && quads == 1 ? straight : 0);
+}
+
+}  // namespace
+
+int QuadPairs::diagonal(int f) const {
+  for (int h = 3 * f; h < 3 * f + 3; ++h)
+    if (mesh_.opposite[h] >= 0 && mesh_.opposite[h] / 3 == mate_[f]) return h;
+  return -1;
+}
+
+QuadPairs::Corners QuadPairs::corners(int h) const {
+  const int n = EditMesh::next(h), p = EditMesh::prev(h);
+  if (is_diagonal(n)) return {{mesh_.from(h), mesh_.to(h), mesh_.apex(mesh_.opposite[n]), mesh_.apex(h)}};
+  return {{mesh_.from(h), mesh_.to(h), mesh_.apex(h), mesh_.apex(mesh_.opposite[p])}};
+}
+
+int QuadPairs::half_at(int f, int v) const {
+  for (const int g : {f, mate_[f]})
+    for (int h = 3 * g; h < 3 * g + 3; ++h)
+      if (mesh_.from(h) == v) return h;
+  return -1;
+}
+
+double QuadPairs::badness(const std::array<int, 4>& q) const {
+  std::array<Vec3, 4> p;
+  for (int i = 0; i < 4; ++i) p[i] = points_[q[i]];
+  const Vec3 n = (p[2] - p[0]).cross(p[3] - p[1]);
+  double sum = 0;
+  std::array<double, 4> length;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 a = p[(i + 1) % 4] - p[i], b = p[(i + 3) % 4] - p[i];
+    length[i] = a.norm();
+    const double l = std::sqrt(a.squaredNorm() * b.squaredNorm() * n.squaredNorm());
+    sum += 1 - (l > 0 ? a.cross(b).dot(n) / l : -1.0);
+  }
+  const double aspect = std::log(std::max(1e-9, length[0] + length[2]) / std::max(1e-9, length[1] + length[3]));
+  return sum + aspect * aspect;
+}
+
+int QuadPairs::excess(int v) const {
+  int edges = 0;
+  int h = mesh_.out[v];
+  do {
+    if (!is_diagonal(h)) ++edges;
+    const int n = mesh_.ccw(h);
+    if (n < 0) return edges - (boundary_quads_.empty() ? 2 : boundary_quads_[v]);
+    h = n;
+  } while (h != mesh_.out[v]);
+  return edges - 4;
+}
+
+double QuadPairs::sector_energy(int h, int change) const {
+  const int v = mesh_.from(h);
+  if (!features_.is_on_curve(v)) return valence_energy(excess(v) + change);
+  const MeshFeatures::Sector sector = features_.sector(mesh_, h);
+  return energy_of(quads_in(sector) + change, regular_quads(sector));
+}
+
+int QuadPairs::quads_in(const MeshFeatures::Sector& sector) const {
+  int quads = 1;
+  for (int g = mesh_.ccw(sector.first); g >= 0 && g != sector.last && g != sector.first; g = mesh_.ccw(g)) quads += !is_diagonal(g);
+  return quads;
+}
+
+int QuadPairs::regular_quads(const MeshFeatures::Sector& sector) const {
+  return std::max(1, static_cast<int>(std::lround(features_.sector_angle(mesh_, points_, sector) / (0.5 * std::numbers::pi))));
+}
+
+bool QuadPairs::lacks_quads(int h, int fewer) const {
+  const MeshFeatures::Sector sector = features_.sector(mesh_, h);
+  return quads_in(sector) - fewer < regular_quads(sector);
+}
+
+double QuadPairs::diagonal_energy(int h) const {
+  if (!features_.is_on_curve(mesh_.from(h))) return 0;
+  const MeshFeatures::Sector sector = features_.sector(mesh_, h);
+  const int triangles = MeshFeatures::sector_triangles(mesh_, sector), regular = regular_quads(sector);
+  return std::max(0.0, energy_of(triangles - 1, regular) - energy_of(triangles, regular));
+}
+
+}  // namespace hybrid_mesh

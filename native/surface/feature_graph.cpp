@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surface/feature_graph.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "base/disjoint_sets.h"
+
+namespace hybrid_mesh {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+class FeatureSearch {
+ public:
+  FeatureSearch(const TriangleSurface& surface, const FeatureOptions& options)
+      : s_(surface), options_(options), angle_(surface.opposite.size(), 0), on_(surface.opposite.size(), 0), around_(surface.points.size()) {
+    std::vector<Vec3> normals;
+    for (const auto& f : s_.faces) normals.push_back((s_.points[f[1]] - s_.points[f[0]]).cross(s_.points[f[2]] - s_.points[f[0]]).normalized());
+    for (int h = 0; h < static_cast<int>(angle_.size()); ++h)
+      if (const int o = s_.opposite[h]; o >= 0)
+        angle_[h] = std::atan2(normals[h / 3].cross(normals[o / 3]).norm(), normals[h / 3].dot(normals[o / 3])) / kDegree;
+  }
+
+  std::vector<char> run() {
+    grow();
+    drop_stubs();
+    double area = 0, kept = 0, left = 0;
+    for (const auto& f : s_.faces) area += 0.5 * (s_.points[f[1]] - s_.points[f[0]]).cross(s_.points[f[2]] - s_.points[f[0]]).norm();
+    for (int h = 0; h < static_cast<int>(angle_.size()); ++h) {
+      if (s_.opposite[h] < h) continue;
+      if (on_[h])
+        kept += length(h);
+      else if (angle_[h] >= options_.weak_angle)
+        left += length(h);
+    }
+    if (left > options_.most_left * kept || kept < options_.least_total * std::sqrt(area)) return {};
+    return on_;
+  }
+
+ private:
+  double length(int h) const { return (s_.points[s_.to(h)] - s_.points[s_.from(h)]).norm(); }
+
+  bool is_crisp(int h) const {
+    const auto beside = [&](int g) { return std::min(angle_[TriangleSurface::next(g)], angle_[TriangleSurface::previous(g)]); };
+    return angle_[h] >= options_.crispness * std::max(beside(h), beside(s_.opposite[h]));
+  }
+  void set(int h, bool on) {
+    on_[h] = on_[s_.opposite[h]] = on;
+    for (const int v : {s_.from(h), s_.to(h)}) {
+      if (on)
+        around_[v].push_back(h);
+      else
+        std::erase(around_[v], h);
+    }
+  }
+  int other_end(int h, int v) const { return s_.from(h) == v ? s_.to(h) : s_.from(h); }
+
+  // From the sharp edges along those that are nearly so.
+  void grow() {
+    std::vector<std::vector<int>> weak(s_.points.size());
+    std::vector<int> stack;
+    for (int h = 0; h < static_cast<int>(angle_.size()); ++h) {
+      if (s_.opposite[h] < h || angle_[h] < options_.weak_angle || !is_crisp(h)) continue;
+      weak[s_.from(h)].push_back(h), weak[s_.to(h)].push_back(h);
+      if (angle_[h] >= options_.angle) stack.push_back(h);
+    }
+    for (const int h : stack) set(h, true);
+    while (!stack.empty()) {
+      const int h = stack.back();
+      stack.pop_back();
+      for (const int v : {s_.from(h), s_.to(h)})
+        for (const int g : weak[v])
+          if (!on_[g]) set(g, true), stack.push_back(g);
+    }
+  }
+
+  // The chain of edges from a vertex on, up to where it ends or branches, or to its start again.
+  std::vector<int> chain(int v, int h) const {
+    std::vector<int> edges{h};
+    for (int w = other_end(h, v); around_[w].size() == 2 && w != v; w = other_end(h, w)) {
+      h = around_[w][0] == h ? around_[w][1] : around_[w][0];
+      edges.push_back(h);
+    }
+    return edges;
+  }
+  double length(const std::vector<int>& edges) const {
+    return std::accumulate(edges.begin(), edges.end(), 0.0, [&](double sum, int h) { return sum + length(h); });
+  }
+
+  void drop_stubs() {
+    std::vector<char> boundary(s_.points.size(), 0);
+    for (int h = 0; h < static_cast<int>(s_.opposite.size()); ++h)
+      if (s_.opposite[h] < 0) boundary[s_.from(h)] = 1;
+    for (bool any = true; any;) {
+      any = false;
+      for (int v = 0; v < static_cast<int>(around_.size()); ++v) {
+        if (around_[v].size() != 1 || boundary[v]) continue;
+        const std::vector<int> stub = chain(v, around_[v][0]);
+        if (length(stub) >= options_.least_length) continue;
+        for (const int h : stub) set(h, false);
+        any = true;
+      }
+    }
+    std::vector<char> seen(s_.opposite.size(), 0);
+    for (int v = 0; v < static_cast<int>(around_.size()); ++v) {
+      if (around_[v].size() != 2 || seen[around_[v][0]]) continue;
+      const std::vector<int> loop = chain(v, around_[v][0]);
+      for (const int h : loop) seen[h] = 1;
+      const int last = loop.back();
+      const bool closed = loop.size() > 1 && (s_.from(last) == v || s_.to(last) == v);
+      if (closed && length(loop) < options_.least_length)
+        for (const int h : loop) set(h, false);
+    }
+  }
+
+  const TriangleSurface& s_;
+  const FeatureOptions& options_;
+  std::vector<double> angle_;             // per half-edge, degrees
+  std::vector<char> on_;                  // per half-edge
+  std::vector<std::vector<int>> around_;  // per point: one half-edge of each feature edge there
+};
+
+}  // namespace
+
+FeatureGraph find_features(const TriangleSurface& surface, const FeatureOptions& options) {
+  return feature_graph(surface, FeatureSearch(surface, options).run(), options.corner_angle);
+}
+
+FeatureGraph feature_graph(const TriangleSurface& surface, std::vector<char> edges, double corner_angle) {
+  FeatureGraph graph;
+  if (std::none_of(edges.begin(), edges.end(), [](char on) { return on; })) return graph;
+  graph.corners.assign(surface.points.size(), 0);
+  std::vector<std::vector<int>> ends(surface.points.size());
+  std::vector<char> boundary(surface.points.size(), 0);
+  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h) {
+    if (surface.opposite[h] < 0) boundary[surface.from(h)] = 1;
+    if (edges[h]) ends[surface.from(h)].push_back(surface.to(h));
+  }
+  for (std::size_t v = 0; v < ends.size(); ++v) {
+    if (ends[v].empty()) continue;
+    graph.corners[v] = ends[v].size() != 2 || boundary[v];
+    if (graph.corners[v]) continue;
+    const Vec3 a = surface.points[v] - surface.points[ends[v][0]], b = surface.points[ends[v][1]] - surface.points[v];
+    graph.corners[v] = std::atan2(a.cross(b).norm(), a.dot(b)) > corner_angle * kDegree;
+  }
+  graph.edges = std::move(edges);
+  return graph;
+}
+
+std::vector<int> curve_components(const TriangleSurface& surface, const std::vector<char>& feature_edges) {
+  DisjointSets sets(surface.points.size());
+  std::vector<char> on(surface.points.size(), 0);
+  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h)
+    if (surface.opposite[h] < 0 || (!feature_edges.empty() && feature_edges[h])) {
+      sets.join(surface.from(h), surface.to(h));
+      on[surface.from(h)] = on[surface.to(h)] = 1;
+    }
+  std::vector<int> component(surface.points.size(), -1);
+  for (std::size_t v = 0; v < on.size(); ++v)
+    if (on[v]) component[v] = sets.find(static_cast<int>(v));
+  return component;
+}
+
+}  // namespace hybrid_mesh

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sharp edges of the input, from the base to the mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "codec/container.h"
+#include "remesh/plans.h"
+#include "remesh/soundness.h"
+#include "sharp_shapes.h"
+
+namespace hybrid_mesh {
+namespace {
+
+using testing::Json;
+using testing::run;
+using Edge = std::pair<Vec3, Vec3>;
+
+double distance_to(const Edge& edge, const Vec3& p) {
+  const Vec3 way = edge.second - edge.first;
+  const double t = std::clamp((p - edge.first).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (edge.first + t * way - p).norm();
+}
+
+std::vector<Edge> sharp_edges(const PolygonSoup& soup) { return shapes::sharp_edges(soup.points, soup.indices, soup.offsets, 40); }
+
+double length_of(const std::vector<Edge>& edges) {
+  double sum = 0;
+  for (const Edge& e : edges) sum += (e.second - e.first).norm();
+  return sum;
+}
+
+// The mesh's edges that are told to be sharp, each once; expects each of them to be told from both sides.
+std::vector<Edge> marked_edges(const QuadMesh& mesh) {
+  std::multiset<std::pair<int, int>> seen;
+  for (std::size_t f = 0; f < mesh.face_count() && !mesh.sharp.empty(); ++f)
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
+      if (mesh.sharp[i]) seen.insert(std::minmax<int>(mesh.indices[i], mesh.indices[i + 1 < mesh.offsets[f + 1] ? i + 1 : mesh.offsets[f]]));
+  std::vector<Edge> edges;
+  for (auto at = seen.begin(); at != seen.end(); at = seen.upper_bound(*at)) {
+    EXPECT_EQ(seen.count(*at), 2u);
+    edges.push_back({mesh.points[at->first], mesh.points[at->second]});
+  }
+  return edges;
+}
+
+// The marked edges are those of the solid, whole, and its corners are vertices.
+void expect_edges_of(const PolygonSoup& solid, const QuadMesh& mesh) {
+  const std::vector<Edge> wanted = sharp_edges(solid), marked = marked_edges(mesh);
+  for (const Edge& e : marked) {
+    double off = 1e300;
+    for (const Edge& w : wanted) off = std::min(off, std::max(distance_to(w, e.first), distance_to(w, e.second)));
+    ASSERT_LT(off, 1e-9);
+  }
+  EXPECT_NEAR(length_of(marked), length_of(wanted), 1e-9 * length_of(wanted));
+  for (const Vec3& corner : solid.points) {
+    double off = 1e300;
+    for (const Vec3& p : mesh.points) off = std::min(off, (p - corner).norm());
+    EXPECT_LT(off, 1e-12);
+  }
+}
+
+RemeshOptions bounded(std::int64_t vertices) {
+  RemeshOptions options;
+  options.vertices = vertices;
+  return options;
+}
+
+TEST(Features, SolidsComeOutExactly) {
+  for (const PolygonSoup& solid : {shapes::cube(), shapes::l_prism(), shapes::frame()}) {
+    const RemeshResult made = run(solid, bounded(3000));
+    testing::expect_sound(made);
+    EXPECT_LT(made.report["final"]["l2"].get<double>(), 1e-12);
+    EXPECT_LT(made.report["final"]["hausdorff"].get<double>(), 1e-12);
+    EXPECT_GT(made.report["final"]["scaled_jacobian"]["p05"].get<double>(), 0.6);
+    EXPECT_EQ(made.report["features"]["kept"], true);
+    EXPECT_EQ(made.report["features"]["corners"].get<std::size_t>(), solid.points.size());
+    expect_edges_of(solid, made.final_mesh);
+    // So does every level: its sides are straight.
+    for (int level = 0; level < made.hierarchy.depth(); ++level) expect_edges_of(solid, made.hierarchy.level_mesh(level));
+  }
+}
+
+TEST(Features, ASmallCubeIsAsRegularAsCubesAre) {
+  const RemeshResult made = run(shapes::cube(), bounded(100));
+  EXPECT_EQ(made.report["final"]["irregular_vertices"]["base"], 8);
+  EXPECT_GT(made.report["final"]["scaled_jacobian"]["min"].get<double>(), 0.99);
+}
+
+TEST(Features, AdaptiveMeshesKeepThem) {
+  RemeshOptions options = bounded(2500);
+  options.refinement = Refinement::Adaptive;
+  for (const FaceClosure faces : {FaceClosure::Quads, FaceClosure::Transition, FaceClosure::Triangles}) {
+    options.faces = faces;
+    const PolygonSoup solid = shapes::cylinder(48, 3);
+    const RemeshResult made = run(solid, options);
+    const std::vector<Edge> wanted = sharp_edges(solid), marked = marked_edges(made.final_mesh);
+    ASSERT_FALSE(marked.empty());
+    for (const Edge& e : marked)
+      for (const Vec3& end : {e.first, e.second}) {
+        double off = 1e300;
+        for (const Edge& w : wanted) off = std::min(off, distance_to(w, end));
+        EXPECT_LT(off, 1e-9);
+      }
+    // Chords of the rims.
+    EXPECT_NEAR(length_of(marked), length_of(wanted), 0.01 * length_of(wanted));
+  }
+}
+
+TEST(Features, AreLeftAloneWhereNobodyWantsThem) {
+  RemeshOptions options = bounded(1500);
+  options.features = Features::None;
+  const RemeshResult made = run(shapes::cube(), options);
+  EXPECT_TRUE(made.final_mesh.sharp.empty());
+  EXPECT_TRUE(made.report["features"].is_null());
+  EXPECT_TRUE(run(testing::ball(20), bounded(1500)).final_mesh.sharp.empty());
+}
+
+TEST(Features, AGivenAngleDecides) {
+  RemeshOptions options = bounded(3000);
+  options.features = Features::Given;
+  options.feature_angle = 10;
+  const PolygonSoup solid = shapes::cylinder(24, 3);
+  const RemeshResult made = run(solid, options);
+  // The walls' edges too.
+  EXPECT_NEAR(length_of(marked_edges(made.final_mesh)), length_of(shapes::sharp_edges(solid.points, solid.indices, solid.offsets, 10)), 1e-6);
+}
+
+TEST(Features, TooManyForTheBoundAreLetGoAndThatIsSaid) {
+  const RemeshResult made = run(shapes::l_prism(), bounded(60));
+  EXPECT_TRUE(made.final_mesh.sharp.empty());
+  EXPECT_EQ(made.report["features"]["kept"], false);
+  EXPECT_FALSE(made.report["features"]["reason"].get<std::string>().empty());
+}
+
+TEST(Features, AreSavedAndReplayed) {
+  const PolygonSoup solid = shapes::frame();
+  for (const Features features : {Features::Auto, Features::Given}) {
+    RemeshOptions options = bounded(2000);
+    options.features = features;
+    const RemeshResult made = run(solid, options);
+    const std::vector<std::uint8_t> bytes = encode_hierarchy(made.hierarchy, "{}");
+    const HybridMesh loaded = decode_hierarchy(bytes.data(), bytes.size()).hierarchy;
+    EXPECT_EQ(loaded.final_mesh(FaceClosure::Quads).sharp, made.hierarchy.canonical().final_mesh(FaceClosure::Quads).sharp);
+    EXPECT_EQ(encode_hierarchy(loaded, "{}"), bytes);
+    const RemeshResult again = run(solid, options, made.plan);
+    EXPECT_EQ(encode_hierarchy(again.hierarchy, "{}"), bytes);
+    EXPECT_EQ(again.plan, made.plan);
+    options.threads = 1;
+    EXPECT_EQ(encode_hierarchy(run(solid, options).hierarchy, "{}"), bytes);
+  }
+}
+
+TEST(Features, OpenSolidsHaveBoundaryAndSharpEdges) {
+  PolygonSoup open = shapes::l_prism();
+  open.indices.resize(open.indices.size() - 4);  // without one wall
+  open.offsets.pop_back();
+  const RemeshResult made = run(open, bounded(2000));
+  testing::expect_sound(made);
+  EXPECT_LT(made.report["final"]["l2"].get<double>(), 1e-12);
+  const std::vector<Edge> wanted = sharp_edges(open);
+  EXPECT_NEAR(length_of(marked_edges(made.final_mesh)), length_of(wanted), 1e-9 * length_of(wanted));
+}
+
+}  // namespace
+}  // namespace hybrid_mesh

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Solids with flat faces and sharp edges, made up so that tests need no files.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "shapes.h"
+
+namespace hybrid_mesh::shapes {
+
+// Upright walls on an outline, counter-clockwise, and the outline as floor and lid.
+inline PolygonSoup prism(const std::vector<Vec2>& outline, double height) {
+  const int n = static_cast<int>(outline.size());
+  std::vector<Vec3> points;
+  std::vector<std::vector<int>> polygons(2);
+  for (const double z : {0.0, height})
+    for (const Vec2& p : outline) points.push_back({p.x(), p.y(), z});
+  for (int i = 0; i < n; ++i) {
+    polygons.push_back({i, (i + 1) % n, (i + 1) % n + n, i + n});
+    polygons[0].push_back(n - 1 - i);
+    polygons[1].push_back(n + i);
+  }
+  return soup_of(points, polygons);
+}
+
+inline PolygonSoup l_prism() { return prism({{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.8); }
+
+inline PolygonSoup cylinder(int n, double height) {
+  std::vector<Vec2> circle;
+  for (int i = 0; i < n; ++i) circle.push_back({std::cos(2 * std::numbers::pi * i / n), std::sin(2 * std::numbers::pi * i / n)});
+  return prism(circle, height);
+}
+
+// A box with a bar of the same kind through its middle taken out: of genus 1.
+inline PolygonSoup frame() {
+  const std::vector<Vec2> outer{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, inner{{1, 1}, {3, 1}, {3, 2}, {1, 2}};
+  std::vector<Vec3> points;
+  for (const double z : {0.0, 0.7})
+    for (const auto& ring : {outer, inner})
+      for (const Vec2& p : ring) points.push_back({p.x(), p.y(), z});
+  std::vector<std::vector<int>> polygons;
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    polygons.push_back({i, j, j + 8, i + 8});
+    polygons.push_back({j + 4, i + 4, i + 12, j + 12});
+    polygons.push_back({j, i, i + 4, j + 4});
+    polygons.push_back({i + 8, j + 8, j + 12, i + 12});
+  }
+  return soup_of(points, polygons);
+}
+
+// The edges of a mesh whose two faces meet at more than so many degrees, as pairs of points.
+inline std::vector<std::pair<Vec3, Vec3>> sharp_edges(const std::vector<Vec3>& points, const std::vector<std::int32_t>& indices,
+                                                      const std::vector<std::int64_t>& offsets, double degrees) {
+  const auto face_normal = [&](std::size_t f) {
+    Vec3 sum = Vec3::Zero();
+    const Vec3& o = points[indices[offsets[f]]];
+    for (std::int64_t i = offsets[f] + 1; i + 1 < offsets[f + 1]; ++i) {
+      const Vec3 a = points[indices[i]] - o, b = points[indices[i + 1]] - o;
+      sum += Vec3(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x());
+    }
+    return Vec3(sum / sum.norm());
+  };
+  std::vector<std::pair<std::pair<int, int>, std::size_t>> sides;
+  for (std::size_t f = 0; f + 1 < offsets.size(); ++f)
+    for (std::int64_t i = offsets[f]; i < offsets[f + 1]; ++i)
+      sides.push_back({std::minmax<int>(indices[i], indices[i + 1 < offsets[f + 1] ? i + 1 : offsets[f]]), f});
+  std::sort(sides.begin(), sides.end());
+  std::vector<std::pair<Vec3, Vec3>> edges;
+  for (std::size_t k = 0; k + 1 < sides.size(); ++k)
+    if (sides[k].first == sides[k + 1].first &&
+        face_normal(sides[k].second).dot(face_normal(sides[k + 1].second)) < std::cos(degrees * std::numbers::pi / 180))
+      edges.push_back({points[sides[k].first.first], points[sides[k].first.second]});
+  return edges;
+}
+
+}  // namespace hybrid_mesh::shapes
