@@ -260,7 +260,7 @@ def _features(text):
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"auto, none or an angle in degrees, not {text!r}") from None
+        raise argparse.ArgumentTypeError(f"must be auto, none or an angle in degrees, not {text!r}") from None
 
 
 def _base(text):

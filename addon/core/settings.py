@@ -78,11 +78,9 @@ class RemeshSettings:
         _fraction("remove_noise", self.remove_noise, bounds.end_of_remove_noise, "the bounding-box diagonal")
         least, most = bounds.least_stretch_threshold, bounds.most_stretch_threshold
         _number("stretch_threshold", self.stretch_threshold, lambda value: least <= value <= most, f"from {least:.7g} to {most:.7g}")
-        if isinstance(self.features, str):
-            _choice("features", self.features, FEATURES)
-        else:
+        if self.features not in FEATURES:
             least, most = bounds.least_feature_angle, bounds.most_feature_angle
-            _number("features", self.features, lambda value: least <= value <= most, f"auto, none or from {least:g} to {most:g} degrees")
+            _number("features", self.features, lambda value: least <= value <= most, f"auto, none or an angle from {least:g} to {most:g} degrees")
         _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")
         if not isinstance(self.plan, str):
             raise SettingsError("--plan must be a plan's text")

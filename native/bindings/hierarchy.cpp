@@ -216,7 +216,9 @@ void bind_hierarchy(py::module_& module) {
   using py::arg;
   py::class_<PythonHierarchy>(module, "Hierarchy", "The quad meshes of a remesh, level by level.")
       .def_property_readonly("level_names", &level_names, "From the base to the finest: N0, M1, N1, ...")
-      .def("level", &level, arg("name"), "The mesh of a level, as a dict of arrays.")
+      .def("level", &level, arg("name"),
+           "The mesh of a level, as a dict of arrays. Where there are sharp edges, `sharp` says for each corner whether the edge to the face's next "
+           "one is one.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def_property_readonly(
           "operation_count",

@@ -50,14 +50,14 @@ def limits():
     """None is as in the library: a bound that the Python around it knows by itself shows."""
     return {
         "most_vertices": 1_000_003, "end_of_error": 0.75, "end_of_drop_components": 0.5, "end_of_remove_noise": 0.25, "most_levels": 9, "most_base_quads": 5003,
-        "least_stretch_threshold": 1.5, "most_stretch_threshold": 2e3, "most_seed": 10_007, "most_threads": 67, "most_cubes": 31, "most_even_quads": 4099,
+        "least_stretch_threshold": 1.5, "most_stretch_threshold": 2e3, "least_feature_angle": 7, "most_feature_angle": 160, "most_seed": 10_007, "most_threads": 67, "most_cubes": 31, "most_even_quads": 4099,
         "most_buffer_rings": 5, "most_snap": 0.3,
     }  # fmt: skip
 
 
 SETTINGS = {
-    "vertices", "error", "levels", "refinement", "faces", "base", "topology", "components", "remove_noise", "stretch_threshold", "semi_regular", "drop_components", "strict", "seed",
-    "threads", "plan",
+    "vertices", "error", "levels", "refinement", "faces", "base", "topology", "components", "remove_noise", "stretch_threshold", "semi_regular", "features",
+    "drop_components", "strict", "seed", "threads", "plan",
 }  # fmt: skip
 
 

@@ -57,6 +57,18 @@ def test_topology_is_a_setting(command_line, option, values):
         assert report(command_line, "box")["settings"].get(option, values[0]) == value
 
 
+@pytest.mark.parametrize("options, value", [((), "auto"), (("auto",), "auto"), (("none",), "none"), (("40",), 40), (("32.5",), 32.5)])
+def test_sharp_edges_are_a_setting(command_line, options, value):
+    chosen = ("--features", *options) if options else ()
+    command = ("remesh", command_line.box("box.obj"), "--output", "out", *chosen)
+    assert command_line.run(*command).returncode == 0
+    assert report(command_line, "box")["settings"]["features"] == value
+    stored = json.loads(json.loads(command_line.run("info", "out/box.hmesh").out)["metadata"])
+    assert stored["settings"]["features"] == value
+    assert "skipped" in command_line.run(*command, "--resume").out
+    assert "skipped" not in command_line.run("remesh", "box.obj", "--output", "out", "--resume", "--features", "77").out
+
+
 def test_a_plan_is_passed_on_and_known_to_a_resumed_run(command_line):
     first = command_line.run("remesh", command_line.box("box.obj"), "--output", "out")
     assert first.returncode == 0
@@ -154,6 +166,11 @@ def test_inputs_of_one_name_get_names_of_their_own(command_line):
         (("remesh", "box.obj", "--output", "out", "--faces", "hexagons"), "--faces"),
         (("remesh", "box.obj", "--output", "out", "--base-quads", "few"), "--base-quads"),
         (("remesh", "box.obj", "--output", "out", "--base-quads", "0"), "--base-quads"),
+        (("remesh", "box.obj", "--output", "out", "--features", "some"), "--features: must be auto, none or an angle in degrees, not 'some'"),
+        (("remesh", "box.obj", "--output", "out", "--features", ""), "--features"),
+        (("remesh", "box.obj", "--output", "out", "--features", "nan"), "--features"),
+        (("remesh", "box.obj", "--output", "out", "--features", "-40"), "--features"),
+        (("remesh", "box.obj", "--output", "out", "--features", "180"), "--features"),
         (("remesh", "box.obj", "--output", "out", "--export", "glb"), "--export"),
         (("remesh", "box.obj", "--output", "out", "--jobs", "0"), "--jobs"),
         (("remesh", "box.obj", "--output", "out", "--timeout", "-1"), "--timeout"),
@@ -179,7 +196,8 @@ def test_wrong_arguments_get_one_line_and_start_nothing(command_line, arguments,
 
 def test_help_and_version(command_line):
     assert "remesh" in command_line.run("--help").out
-    assert "--base-quads" in command_line.run("remesh", "--help").out
+    options = command_line.run("remesh", "--help").out
+    assert "--base-quads" in options and "--features auto|DEG|none" in options
     assert command_line.run("--version").returncode == 0
 
 

@@ -26,7 +26,8 @@ def test_defaults_and_presets_are_valid():
         ("error", limits().end_of_error), ("levels", -2), ("refinement", "both"), ("faces", "hexagons"), ("base", "most"), ("base", 0),
         ("base", 1.5), ("stretch_threshold", limits().least_stretch_threshold - 0.25), ("stretch_threshold", 2 * limits().most_stretch_threshold),
         ("stretch_threshold", float("nan")), ("drop_components", limits().end_of_drop_components), ("drop_components", -0.1), ("seed", -1),
-        ("threads", -1), *((name, most + 1) for name, most in LARGEST.items()),
+        ("features", "some"), ("features", ""), ("features", None), ("features", True), ("features", float("nan")), ("features", -40),
+        ("features", limits().least_feature_angle - 0.25), ("features", limits().most_feature_angle + 0.25), ("threads", -1), *((name, most + 1) for name, most in LARGEST.items()),
     ],
 )  # fmt: skip
 def test_what_is_out_of_bounds_is_named(name, value):
@@ -40,12 +41,22 @@ def test_what_is_out_of_bounds_is_named(name, value):
     "name, value",
     [
         *LARGEST.items(), ("stretch_threshold", limits().least_stretch_threshold), ("stretch_threshold", limits().most_stretch_threshold),
-        ("error", math.nextafter(limits().end_of_error, 0)), ("drop_components", math.nextafter(limits().end_of_drop_components, 0)),
+        ("features", limits().least_feature_angle), ("features", limits().most_feature_angle), ("error", math.nextafter(limits().end_of_error, 0)), ("drop_components", math.nextafter(limits().end_of_drop_components, 0)),
     ],
 )  # fmt: skip
 def test_the_bounds_are_the_native_modules(name, value):
     """Which here is a stand-in that has others than the library."""
     assert getattr(settings.from_mapping({name: value}), name) == value
+
+
+@pytest.mark.parametrize("value", ["some", 500])
+def test_what_features_may_be_is_said(value):
+    with pytest.raises(SettingsError, match="auto, none or an angle from 7 to 160 degrees"):
+        settings.from_mapping({"features": value})
+
+
+def test_presets_leave_sharp_edges_to_the_surface():
+    assert {settings.preset(name).features for name in settings.PRESETS} == {"auto"}
 
 
 def test_every_setting_has_an_option_name():

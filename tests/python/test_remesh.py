@@ -18,7 +18,7 @@ def result():
 
 
 def check_mesh(mesh):
-    """Shapes and types of a dict of arrays. A hierarchy that a remesh has made also knows what opened where."""
+    """Shapes and types of a dict of arrays. A hierarchy that a remesh has made also knows what opened where, and which edges are sharp."""
     points, faces, corners = len(mesh["points"]), len(mesh["offsets"]) - 1, len(mesh["indices"])
     expected = {
         "points": (np.float64, (points, 3)),
@@ -37,6 +37,8 @@ def check_mesh(mesh):
     }
     if "opened" in mesh:
         expected |= {"opened": (np.int32, (faces,)), "opened_level": (np.int32, (faces,))}
+    if "sharp" in mesh:
+        expected |= {"sharp": (np.bool_, (corners,))}
     assert {name: (array.dtype, array.shape) for name, array in mesh.items()} == expected
     assert mesh["offsets"][-1] == corners and np.isfinite(mesh["points"]).all()
 
