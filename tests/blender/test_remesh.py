@@ -354,6 +354,32 @@ def test_presets_set_the_scene(world):
     assert settings == module("core.settings").preset("draft")
 
 
+@pytest.mark.parametrize("features", ["auto", "none", 5.0, 32.5, 40.0, 175.0])
+def test_sharp_edges_in_settings_and_properties_are_the_same(features):
+    properties, scene = module("features.remesh.properties"), bpy.context.scene.hybrid_mesh
+    settings = module("core.settings").RemeshSettings(features=features)
+    properties.apply_settings(scene, settings)
+    assert scene.features == ("ANGLE" if isinstance(features, float) else features.upper())
+    assert properties.core_settings(scene).features == features
+
+
+def test_the_angle_of_sharp_edges_has_bounds_and_a_default():
+    scene = bpy.context.scene.hybrid_mesh
+    core_settings = module("features.remesh.properties").core_settings
+    assert core_settings(scene).features == "auto"
+    scene.features = "ANGLE"
+    assert core_settings(scene).features == 40
+    for angle, kept in ((0, 5), (math.pi, 175)):
+        scene.feature_angle = angle
+        assert core_settings(scene).features == kept
+
+
+def test_presets_leave_sharp_edges_to_the_surface(world):
+    bpy.context.scene.hybrid_mesh.features = "NONE"
+    assert bpy.ops.hybrid_mesh.preset(name="STANDARD") == {"FINISHED"}
+    assert bpy.context.scene.hybrid_mesh.features == "AUTO"
+
+
 def test_operator_and_panel_have_the_same_settings():
     properties = module("features.remesh.properties")
     operator = bpy.ops.hybrid_mesh.remesh.get_rna_type().properties

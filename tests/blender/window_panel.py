@@ -92,6 +92,7 @@ def steps():
             bpy.utils.register_class(cls)
     bpy.context.scene.hybrid_mesh.refinement = "ADAPTIVE"
     bpy.context.scene.hybrid_mesh.base = "GIVEN"
+    bpy.context.scene.hybrid_mesh.features = "ANGLE"
     yield 0.5
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a remesh as Blender properties, one set for the operator and for the panel."""
 
+import math
+
 import bpy
 import numpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
@@ -31,6 +33,11 @@ COMPONENTS = (
     ("APART", "Apart", "A base domain for each component"),
     ("JOINED", "Joined", "One base domain for all components, which part on finer levels"),
 )
+FEATURES = (
+    ("AUTO", "Automatic", "Edges at which flat or smooth faces meet at an angle are kept; a scan has none"),
+    ("NONE", "None", "No edges are kept"),
+    ("ANGLE", "From Angle", "All edges are kept at which the surface turns by a given angle or more"),
+)
 
 # Blender's whole numbers have 32 bits.
 _LARGEST_WHOLE_NUMBER = 2**31 - 1
@@ -44,6 +51,11 @@ def _whole(most):
 def _below(end):
     """The largest number below `end` that a property can hold."""
     return float(numpy.nextafter(numpy.float32(end), numpy.float32(0)))
+
+
+def _degrees(radians):
+    """Of an angle that a property holds, in single precision: without the digits that it does not have, which would put 175 degrees beyond their bound."""
+    return round(math.degrees(radians), 4)
 
 
 class RemeshProperties:
@@ -69,6 +81,13 @@ class RemeshProperties:
     )
     topology: EnumProperty(name="Topology", description="Where handles, tunnels and boundaries open", items=TOPOLOGIES, default="AUTO")
     components: EnumProperty(name="Components", description="What the base domain has of components", items=COMPONENTS, default="APART")
+    features: EnumProperty(
+        name="Sharp Edges", description="Sharp edges that rows of quads run along, and that stay sharp on every level", items=FEATURES, default="AUTO"
+    )
+    feature_angle: FloatProperty(
+        name="Angle", description="Angle between the normals of two faces from which on the edge between them is sharp", subtype="ANGLE",
+        default=math.radians(40), min=math.radians(limits().least_feature_angle), max=math.radians(limits().most_feature_angle),
+    )  # fmt: skip
     stretch: FloatProperty(
         name="Stretch", description="Grow skin where the map is stretched more than this", default=4, min=limits().least_stretch_threshold,
         max=limits().most_stretch_threshold, soft_max=20,
@@ -110,6 +129,7 @@ def core_settings(properties):
         base=properties.base_quads if properties.base == "GIVEN" else properties.base.lower(),
         topology=properties.topology.lower(),
         components=properties.components.lower(),
+        features=_degrees(properties.feature_angle) if properties.features == "ANGLE" else properties.features.lower(),
         remove_noise=properties.remove_noise,
         stretch_threshold=properties.stretch,
         semi_regular=properties.semi_regular,
@@ -122,7 +142,7 @@ def core_settings(properties):
 
 def apply_settings(properties, settings):
     """Sets properties to RemeshSettings."""
-    given = not isinstance(settings.base, str)
+    given, angle = not isinstance(settings.base, str), not isinstance(settings.features, str)
     properties.vertices = settings.vertices
     properties.error = settings.error
     properties.levels = settings.levels
@@ -133,6 +153,9 @@ def apply_settings(properties, settings):
         properties.base_quads = settings.base
     properties.topology = settings.topology.upper()
     properties.components = settings.components.upper()
+    properties.features = "ANGLE" if angle else settings.features.upper()
+    if angle:
+        properties.feature_angle = math.radians(settings.features)
     properties.remove_noise = settings.remove_noise
     properties.stretch = settings.stretch_threshold
     properties.semi_regular = settings.semi_regular
@@ -163,6 +186,9 @@ def draw_advanced(layout, properties):
         column.prop(properties, "base_quads")
     column.prop(properties, "topology")
     column.prop(properties, "components")
+    column.prop(properties, "features")
+    if properties.features == "ANGLE":
+        column.prop(properties, "feature_angle")
     column.prop(properties, "stretch")
     column.prop(properties, "semi_regular")
     column.prop(properties, "drop_components")
