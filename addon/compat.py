@@ -1,17 +1,38 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Differences between Blender versions: the only module that asks which one this is."""
 
+import math
+
 import bpy
 import numpy
 
 HAS_COMMAND_LINE = bpy.app.version >= (4, 2, 0)
 _HAS_NODE_INTERFACE = bpy.app.version >= (4, 0, 0)
 _HAS_UV_VECTORS = bpy.app.version >= (3, 5, 0)
+_HAS_EDGE_ATTRIBUTES = bpy.app.version >= (4, 0, 0)
+_HAS_AUTO_SMOOTH = bpy.app.version < (4, 1, 0)
 
 
 def uv_values(layer):
     """The collection of a UV layer and the name of its property, for foreach_get and foreach_set."""
     return (layer.uv, "vector") if _HAS_UV_VECTORS else (layer.data, "uv")
+
+
+def new_sharp_edges(mesh):
+    """The collection that says which edges of a new mesh are sharp and the name of its property, for foreach_set."""
+    return (mesh.attributes.new("sharp_edge", "BOOLEAN", "EDGE").data, "value") if _HAS_EDGE_ATTRIBUTES else (mesh.edges, "use_edge_sharp")
+
+
+def new_edge_creases(mesh):
+    """The same for the creases of its edges."""
+    return (mesh.attributes.new("crease_edge", "FLOAT", "EDGE").data, "value") if _HAS_EDGE_ATTRIBUTES else (mesh.edges, "crease")
+
+
+def split_normals(mesh):
+    """Has a smooth mesh's normals split at edges that are marked as sharp, and nowhere else; later versions always do."""
+    if _HAS_AUTO_SMOOTH:
+        mesh.use_auto_smooth = True
+        mesh.auto_smooth_angle = math.pi
 
 
 def new_level_input(group, name, description, most):

@@ -44,6 +44,13 @@ def reversed_corners(offsets):
     return turned - numpy.arange(offsets[-1], dtype=offsets.dtype)
 
 
+def reversed_edges(offsets):
+    """The same for edges, which go by the corner that they start from in their face: the edge from new corner i is that from old corner result[i]."""
+    following = numpy.arange(1, offsets[-1] + 1, dtype=offsets.dtype)
+    following[offsets[1:] - 1] = offsets[:-1]
+    return reversed_corners(offsets)[following]
+
+
 def closest_weights(points, triangles, inside=True):
     """Barycentric weights in (n, 3, 3) triangles of the points nearest to (n, 3) points: of the triangle, or of its plane."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]

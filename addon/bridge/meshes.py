@@ -10,7 +10,7 @@ import mathutils
 import numpy
 
 from .. import compat
-from .arrays import MeshArrays, mirrors, reversed_corners, transformed, world_matrix
+from .arrays import MeshArrays, mirrors, reversed_corners, reversed_edges, transformed, world_matrix
 from .objects import key_of
 
 STRETCH, STRETCH_COLOR, ANISOTROPY, PATCH, IRREGULAR, PATCH_UV = "stretch", "stretch_color", "anisotropy", "patch", "irregular", "patches"
@@ -88,12 +88,32 @@ def new_mesh(name, made, matrix):
         raise RuntimeError(f"{name} is not a valid mesh")
     if "uv" in made:
         add_uv(mesh, PATCH_UV, numpy.asarray(made["uv"])[corners])
+    if "sharp" in made:
+        mark_sharp(mesh, numpy.asarray(made["sharp"])[edge_order(offsets, matrix)])
     return mesh
 
 
 def corner_order(offsets, matrix):
     """Which corner of a MeshDict is which of the mesh that new_mesh makes of it: faces are turned over where the object mirrors."""
     return reversed_corners(offsets) if mirrors(matrix) else slice(None)
+
+
+def edge_order(offsets, matrix):
+    """As corner_order, of the edges from each corner to the face's next."""
+    return reversed_edges(offsets) if mirrors(matrix) else slice(None)
+
+
+def mark_sharp(mesh, sharp):
+    """Makes edges of a new mesh sharp (a bool a corner: the edge from it to the face's next one): marked as such, with normals split there and full creases."""
+    if not sharp.any():
+        return
+    marked = numpy.zeros(len(mesh.edges), dtype=bool)
+    marked[values_of(mesh.loops, "edge_index", 1, numpy.int32)[sharp]] = True
+    collection, field = compat.new_sharp_edges(mesh)
+    collection.foreach_set(field, marked)
+    collection, field = compat.new_edge_creases(mesh)
+    collection.foreach_set(field, marked.astype(numpy.float32))
+    compat.split_normals(mesh)
 
 
 def add_uv(mesh, name, values):

@@ -13,8 +13,8 @@ _FLOATING = {"FLOAT", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
 _WHOLE = {"INT", "BOOLEAN"}
 # What Blender and a level have of their own.
 _OWN = {
-    "position", "material_index", "sharp_face", "sharp_edge", "custom_normal", meshes.STRETCH, meshes.STRETCH_COLOR, meshes.ANISOTROPY, meshes.PATCH,
-    meshes.IRREGULAR, meshes.PATCH_UV, meshes.ROOT, meshes.PATH, meshes.OPENED, meshes.OPENED_LEVEL,
+    "position", "material_index", "sharp_face", "sharp_edge", "crease_edge", "custom_normal", meshes.STRETCH, meshes.STRETCH_COLOR, meshes.ANISOTROPY,
+    meshes.PATCH, meshes.IRREGULAR, meshes.PATCH_UV, meshes.ROOT, meshes.PATH, meshes.OPENED, meshes.OPENED_LEVEL,
 }  # fmt: skip
 
 

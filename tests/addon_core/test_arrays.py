@@ -72,6 +72,18 @@ def test_islands_end_at_seams():
     assert len(set(arrays.surface_islands(shuffled.ravel(), numpy.zeros((9000, 2))))) == 1
 
 
+def test_turned_faces_have_the_same_edges():
+    offsets = numpy.array([0, 4, 7, 12])
+    indices = numpy.array([0, 1, 2, 3, 2, 1, 4, 5, 6, 7, 8, 9])
+
+    def edges(corners):
+        return [{face[i], face[(i + 1) % len(face)]} for face in numpy.split(corners, offsets[1:-1]) for i in range(len(face))]
+
+    order = arrays.reversed_edges(offsets)
+    assert edges(indices[arrays.reversed_corners(offsets)]) == [edges(indices)[edge] for edge in order]
+    assert sorted(order.tolist()) == list(range(12))
+
+
 def test_majority():
     assert arrays.majority(numpy.array([[1, 2, 2, 3], [5, 5, 1, 1], [4, 4, 4, 4]])).tolist() == [1, 0, 0]
 
