@@ -301,6 +301,16 @@ TEST(LateTopology, HardCases) {
   }
 }
 
+TEST(LateTopology, AChainOfFiftyRings) {
+  const RemeshResult r = run(testing::plate_with_windows(50, 3), late(16000, Refinement::Adaptive));
+  expect_sound(r);
+  expect_levels_as_reported(r);
+  EXPECT_LE(r.final_mesh.points.size(), 16000u);
+  const Json& loops = r.report["topology"]["loops"];
+  EXPECT_EQ(loops.size(), 50u);
+  for (const Json& e : loops) EXPECT_TRUE(e["level"].get<int>() > 0 || !e.value("reason", "").empty()) << e;
+}
+
 TEST(LateTopology, TheSameBytesForAnyNumberOfThreads) {
   RemeshOptions options = late(2000, Refinement::Adaptive);
   options.threads = 1;
