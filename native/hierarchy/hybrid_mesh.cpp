@@ -261,7 +261,7 @@ void HybridMesh::refine_balanced(int leaf, std::vector<int>* refined) {
       if (!other.valid() || !is_leaf(other.node)) continue;
       int finer_sides = 0;
       for (int t = 0; t < 4; ++t) finer_sides += has_finer_neighbour(other.node, t);
-      if (finer_sides >= 3) stack.push_back(other.node);
+      if (finer_sides >= 3 || is_sharp(n, s)) stack.push_back(other.node);
     }
   }
 }
@@ -282,14 +282,16 @@ void HybridMesh::balance(std::vector<int>* refined) {
       if (!is_leaf(n)) continue;
       coarse.clear();
       int finer_sides = 0;
+      bool coarse_at_feature = false;
       for (int s = 0; s < 4; ++s) {
         finer_sides += has_finer_neighbour(n, s);
+        coarse_at_feature |= is_sharp(n, s) && has_finer_neighbour(n, s);
         // Looked at from the finer leaf: its corners show every coarser one, also where they lie inside that one's side.
         visit_corner(n, s, [&](int other, bool) {
           if (nodes_[other].level + 1 < nodes_[n].level) coarse.push_back(other);
         });
       }
-      if (finer_sides >= 3) coarse.push_back(n);
+      if (finer_sides >= 3 || coarse_at_feature) coarse.push_back(n);
       for (int leaf : coarse) refine_balanced(leaf, refined);
       changed |= !coarse.empty();
     }

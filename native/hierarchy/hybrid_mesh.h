@@ -168,12 +168,13 @@ class HybridMesh {
   // --- regular refinement --------------------------------------------------------------------------------------------------------------
   // Instantiates the four children and returns the first (the present one if refined already). Throws Error{Unsupported} beyond max_level.
   int refine(int node);
-  // Refines a leaf and whatever else must be so that leaves that touch (by edge or vertex) differ by at most one level and no leaf has finer
-  // neighbours on three or four sides. All refined nodes are appended to `refined`, in order.
+  // Refines a leaf and whatever else must be so that leaves that touch (by edge or vertex) differ by at most one level, no leaf has finer
+  // neighbours on three or four sides, and none across a sharp side: a hanging node there, which the feature holds, would be a straight corner. All
+  // refined nodes are appended to `refined`, in order.
   void refine_balanced(int leaf, std::vector<int>* refined = nullptr);
   // Until every leaf has at least this level.
   void refine_uniform(int levels);
-  // Makes the two conditions of refine_balanced hold everywhere.
+  // Makes the conditions of refine_balanced hold everywhere.
   void balance(std::vector<int>* refined = nullptr);
 
   // Counts of the mesh of all leaves, hanging nodes being vertices; kept up to date by every refinement (O(1)).

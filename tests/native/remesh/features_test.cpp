@@ -98,6 +98,9 @@ TEST(Features, AdaptiveMeshesKeepThem) {
     const RemeshResult made = run(solid, options);
     const std::vector<Edge> wanted = sharp_edges(solid), marked = marked_edges(made.final_mesh);
     ASSERT_FALSE(marked.empty());
+    const HybridMesh& mesh = made.hierarchy;
+    for (const int leaf : mesh.leaves())
+      for (int side = 0; side < 4; ++side) EXPECT_FALSE(mesh.is_sharp(leaf, side) && mesh.has_finer_neighbour(leaf, side));
     for (const Edge& e : marked)
       for (const Vec3& end : {e.first, e.second}) {
         double off = 1e300;
