@@ -67,17 +67,11 @@ class HierarchyArchive {
     return sharp;
   }
 
-  static void set_sharp(HybridMesh& mesh, const std::vector<std::uint8_t>& sharp) {
-    for (std::size_t q = 0; q < sharp.size(); ++q)
-      for (int s = 0; s < 4; ++s)
-        if ((sharp[q] >> s) & 1) mesh.set_sharp(static_cast<int>(q), s);
-  }
-
   static HybridMesh canonical(const HybridMesh& old) {
     HybridMesh mesh;
     if (old.node_count() == 0) return mesh;
     mesh = HybridMesh::from_base(old.base_vertices_, base_quads(old), base_links(old));
-    set_sharp(mesh, sharp_sides(old));
+    mesh.take_sharp_sides(old);
     std::vector<int> order(old.operations_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return old.operations_[a].repatch.level < old.operations_[b].repatch.level; });
@@ -205,7 +199,9 @@ class HierarchyArchive {
       refuse("a number of base vertices out of range");
     HybridMesh mesh = HybridMesh::from_base(parts.base_vertices, parts.base_quads, parts.base_links);
     if (!parts.sharp.empty() && parts.sharp.size() != parts.base_quads.size()) refuse("sharp sides and base quads differ in number");
-    set_sharp(mesh, parts.sharp);
+    for (std::size_t q = 0; q < parts.sharp.size(); ++q)
+      for (int s = 0; s < 4; ++s)
+        if ((parts.sharp[q] >> s) & 1) mesh.set_sharp(static_cast<int>(q), s);
     if (parts.enabled.size() != parts.operations.size()) refuse("operations and choices differ in number");
     for (std::size_t o = 1; o < parts.operations.size(); ++o)
       if (parts.operations[o].level < parts.operations[o - 1].level) refuse("operations out of order");

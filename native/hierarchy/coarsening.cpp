@@ -19,9 +19,7 @@ HybridMesh base_of(const HybridMesh& mesh) {
       links[q][i] = mesh.root_neighbour(q, i);
     }
   HybridMesh base = HybridMesh::from_base(mesh.base_vertex_count(), quads, links);
-  for (int q = 0; q < mesh.base_count(); ++q)
-    for (int i = 0; i < 4; ++i)
-      if (mesh.is_sharp(q, i)) base.set_sharp(q, i);
+  base.take_sharp_sides(mesh);
   return base;
 }
 

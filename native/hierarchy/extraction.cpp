@@ -175,7 +175,7 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
       loop.push_back(vertex(corner.vertex, face.owner, corner.u, corner.v));
     }
     sharp_side.clear();
-    for (int i = 0; i < count; ++i) sharp_side.push_back(edges_[polygons.corners[begin + i].half >> 1].sharp);
+    for (int i = 0; i < count && sharp; ++i) sharp_side.push_back(edges_[polygons.corners[begin + i].half >> 1].sharp);
     if (split) {
       middles.clear();
       for (int i = 0; i < count; ++i) {
@@ -200,12 +200,14 @@ QuadMesh HybridMesh::close(const Polygons& polygons, FaceClosure closure, const 
       if (hanging) apex = i;
     }
     std::rotate(loop.begin(), loop.begin() + apex, loop.end());
-    std::rotate(sharp_side.begin(), sharp_side.begin() + apex, sharp_side.end());
+    if (sharp) std::rotate(sharp_side.begin(), sharp_side.begin() + apex, sharp_side.end());
     if (closure == FaceClosure::Triangles && count > 4) {
       for (int i = 1; i + 1 < count; ++i) {
         mesh.indices.insert(mesh.indices.end(), {loop[0], loop[i], loop[i + 1]});
-        const char first = i == 1 ? sharp_side[0] : 0, last = i + 2 == count ? sharp_side[i + 1] : 0;
-        if (sharp) mesh.sharp.insert(mesh.sharp.end(), {first, sharp_side[i], last});
+        if (sharp) {
+          const char first = i == 1 ? sharp_side[0] : 0, last = i + 2 == count ? sharp_side[i + 1] : 0;
+          mesh.sharp.insert(mesh.sharp.end(), {first, sharp_side[i], last});
+        }
         end_face(face.node);
       }
     } else {

@@ -142,6 +142,12 @@ void HybridMesh::set_sharp(int base_quad, int side) {
   }
 }
 
+void HybridMesh::take_sharp_sides(const HybridMesh& other) {
+  for (int q = 0; q < base_count_; ++q)
+    for (int side = 0; side < 4; ++side)
+      if (other.is_sharp(q, side)) set_sharp(q, side);
+}
+
 bool HybridMesh::has_sharp_sides() const {
   return std::any_of(edges_.begin(), edges_.end(), [](const Edge& e) { return e.sharp; });
 }

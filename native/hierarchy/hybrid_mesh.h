@@ -132,6 +132,7 @@ class HybridMesh {
   // Whether a node's side is on a feature of the surface, which vertices on it follow. What a side of the base is, all its parts are.
   bool is_sharp(int node, int side) const { return edges_[nodes_[node].half[side] >> 1].sharp; }
   void set_sharp(int base_quad, int side);
+  void take_sharp_sides(const HybridMesh& other);  // of a hierarchy with the same base
   bool has_sharp_sides() const;
   VertexId corner(int node, int i) const { return from(nodes_[node].half[i]); }
   // Square of the node in that of an ancestor: lower corner and width.

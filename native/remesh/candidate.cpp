@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "construction/construction.h"
@@ -22,8 +23,8 @@ namespace hybrid_mesh {
 namespace {
 
 constexpr int kRequests = 8;
-constexpr int kFeatureRequests = 3;  // with features: what fails then is seldom a matter of near-ties
-constexpr int kMostMisses = 3;       // requests with which a few quads too many are made up for, before a coarser mesh is kept
+constexpr std::size_t kFeatureRequests = 3;  // with features: what fails then is seldom a matter of near-ties
+constexpr int kMostMisses = 3;               // requests with which a few quads too many are made up for, before a coarser mesh is kept
 // A base of more quads than this has room for a ring around a feature that sticks out, so that it is sought of so many quads fewer.
 constexpr double kRoomyBase = 280;
 // The last triangles of a decimation are too few to choose quads from: below this size the base's is taken for the least.
@@ -37,7 +38,7 @@ int least_quads(const TopologySummary& topology) {
 
 // The construction of a base, whose quads get their maps.
 Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
-  Construction made(map.layout.graph(), area_of(working.mesh), task.base.version());
+  Construction made(map.layout.graph(), surface_area(working.mesh), task.base.version());
   for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
     for (int i = 0; i < 4; ++i)
       if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
@@ -228,8 +229,8 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   Found<Candidate> missing;  // leaves a level of the budget unused, for a few quads
   int misses = 0;
   const bool features = target.features && keeps_features(task);
-  for (const BaseRequest& request : requests) {
-    if (features && &request - requests.data() == kFeatureRequests) break;
+  const std::size_t tried = features ? std::min(requests.size(), kFeatureRequests) : requests.size();
+  for (const BaseRequest& request : std::span(requests).first(tried)) {
     Found<Candidate> c = found([&] { return make_candidate(task, budget, request, features, working); });
     if (c && just_misses(task, budget, *c)) {
       if (!missing) missing = std::move(c);

@@ -67,14 +67,14 @@ Found<Candidate> another_candidate(const RemeshTask& task) {
   const bool minimal = may_be_minimal(task);
   if (minimal) options.base = BaseSize::Minimal;
   const RemeshTask other{options, task.source, task.base, task.progress, task.watch};
-  Found<Candidate> c = search_candidate(other, {0, 0, false}, base_requests(options, !minimal)).candidate;
+  Found<Candidate> c = search_candidate(other, {.features = false}, base_requests(options, !minimal)).candidate;
   if (c) c = {fitted(other, std::move(*c), true), {}};
   return c;
 }
 
 // A base of four times the quads, one level lower: it goes out into limbs in which every quad of a smaller one has another limb beside it.
 Found<Candidate> finer_candidate(const RemeshTask& task) {
-  Found<Candidate> c = search_candidate(task, {0, 1, false}, base_requests(task.options, false)).candidate;
+  Found<Candidate> c = search_candidate(task, {.levels_less = 1, .features = false}, base_requests(task.options, false)).candidate;
   if (c) c = {fitted(task, std::move(*c), true), {}};
   return c;
 }
@@ -88,46 +88,49 @@ void keep_better(Candidate& best, Found<Candidate> other) {
   if (other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2) best = std::move(*other);
 }
 
-// With the base's sharp sides quads may be thin between them. From here on a base that has more of them to choose from is looked at as well ...
-constexpr double kSomeInverted = 0.001, kFarOff = 0.01;  // of the quads; of the diagonal
-constexpr double kManyInverted = 0.005;                  // ... and from here on one without sharp sides
-
-// What counts against a mesh: distance, and a good deal more of it where quads are inverted.
-double badness(const Candidate& c) {
-  constexpr double inverted = 100;  // times the distance, were all of them
-  return c.distance.l2 * (1 + inverted * quad_quality(c.final_mesh).inverted);
-}
-
 // The best of what is tried for a target. Not fitted where some of the topology finds no room to open.
-Found<Candidate> best_for(const RemeshTask& task, const Target& target) {
-  CandidateSearch first = search_candidate(task, target, base_requests(task.options, false));
-  if (!first.candidate) {
-    if (task.base.series || (target.features && keeps_features(task))) return first.candidate;
-    throw Error(first.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, first.candidate.reason);
-  }
-  if (!first.candidate->unopened.empty()) return std::move(first.candidate);
-  Candidate best = fitted(task, std::move(*first.candidate), true);
-  if (best.keeps_features || task.options.error > 0 || !misses_a_limb(task, best)) return {std::move(best), {}};
+CandidateSearch best_for(const RemeshTask& task, const Target& target) {
+  CandidateSearch search = search_candidate(task, target, base_requests(task.options, false));
+  if (!search.candidate || !search.candidate->unopened.empty()) return search;
+  Candidate& best = *search.candidate;
+  best = fitted(task, std::move(best), true);
+  if (best.keeps_features || task.options.error > 0 || !misses_a_limb(task, best)) return search;
   keep_better(best, another_candidate(task));
   if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
-  return {std::move(best), {}};
+  return search;
 }
+
+// Between sharp sides quads may have no room. A mesh with sharp sides of which so many quads are inverted, or that is so far off (of the diagonal),
+// is compared with one of a finer base; one with many inverted quads with one without sharp sides.
+constexpr double kSomeInverted = 0.001, kManyInverted = 0.005, kFarOff = 0.01;
 
 double inverted(const Candidate& c) { return quad_quality(c.final_mesh).inverted; }
 
+// What counts against a mesh: distance, and a good deal more of it where quads are inverted.
+double badness(const Candidate& c) {
+  constexpr double all_inverted = 100;  // times the distance
+  return c.distance.l2 * (1 + all_inverted * inverted(c));
+}
+
 // With the sharp edges of the surface, or, where these cannot be kept or make it worse, without.
-Found<Candidate> best_candidate(const RemeshTask& task) {
-  if (!keeps_features(task)) return best_for(task, {});
-  Found<Candidate> with = best_for(task, {});
-  if (may_be_finer(task) && (!with || inverted(*with) > kSomeInverted || with->distance.hausdorff > kFarOff)) {
-    Found<Candidate> finer = best_for(task, {0, 1});
-    if (finer && (!with || badness(*finer) < badness(*with))) with = std::move(finer);
+CandidateSearch best_with_features(const RemeshTask& task) {
+  CandidateSearch with = best_for(task, {});
+  if (may_be_finer(task) && (!with.candidate || inverted(*with.candidate) > kSomeInverted || with.candidate->distance.hausdorff > kFarOff)) {
+    CandidateSearch finer = best_for(task, {.levels_less = 1});
+    if (finer.candidate && (!with.candidate || badness(*finer.candidate) < badness(*with.candidate))) with = std::move(finer);
   }
-  if (with && inverted(*with) < kManyInverted) return with;
-  Found<Candidate> without = best_for(task, {0, 0, false});
-  if (!without || (with && badness(*with) <= badness(*without))) return with;
-  without->lost_features = with ? "the quads between them would be distorted" : with.reason;
+  if (with.candidate && inverted(*with.candidate) < kManyInverted) return with;
+  CandidateSearch without = best_for(task, {.features = false});
+  if (with.candidate && (!without.candidate || badness(*with.candidate) <= badness(*without.candidate))) return with;
+  if (without.candidate) without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
   return without;
+}
+
+Found<Candidate> best_candidate(const RemeshTask& task) {
+  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_for(task, {});
+  // What opens late is tried in the base next.
+  if (!best.candidate && !task.base.series) throw Error(best.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, best.candidate.reason);
+  return std::move(best.candidate);
 }
 
 // What finds no room to open above the base opens in it: then the base is another one.

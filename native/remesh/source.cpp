@@ -84,7 +84,7 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
   source.placement = placement_of(source.repaired.points);
   if (options.remove_noise > 0) close_small_handles(source, options.remove_noise, progress);
   source.topology = summarize_topology(to_soup(source.repaired));
-  source.area = area_of(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
+  source.area = surface_area(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
   look_for_features(source, options);
   source.fingerprint = fingerprint(source.repaired);
   PolygonSoup unit = input;

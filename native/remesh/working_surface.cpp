@@ -153,13 +153,6 @@ std::int64_t working_faces(double base_quads, std::int64_t vertices) {
   return static_cast<std::int64_t>(std::min(std::max(faces_a_base_quad * base_quads, 2.0 * static_cast<double>(vertices)), most));
 }
 
-double area_of(const TriangleSurface& surface) {
-  double area = 0;
-  for (const auto& [a, b, c] : surface.faces)
-    area += 0.5 * (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm();
-  return area;
-}
-
 void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired) const {
   for (std::size_t t = 0; t < map.triangles.size(); ++t) {
     const int face = map.source_face[t];
@@ -190,7 +183,7 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
                                     const std::vector<char>& held, const std::optional<FeatureOptions>& features, const WorkingSizes& sizes) {
   TriangleSurface placed = repaired;
   for (Vec3& p : placed.points) p = placement.to_unit(p);
-  const double triangle = area_of(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
+  const double triangle = surface_area(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
   const double edge = std::sqrt(4 / std::sqrt(3.0) * triangle);
   WellShapedOptions options;
   options.longest_edge = sizes.longest * edge;

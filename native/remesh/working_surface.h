@@ -46,8 +46,6 @@ struct WorkingSizes {
 // enough for the base to choose from. In numbers of equal triangles on the same area.
 std::int64_t working_faces(double base_quads, std::int64_t vertices);
 
-double area_of(const TriangleSurface& surface);
-
 // `faces`: see working_faces(). Where the repaired surface's are smaller, they stay. `held`: per face of it whether nothing may be mended there;
 // empty: of none. `features`: how its sharp edges are found; none: they are not kept.
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,

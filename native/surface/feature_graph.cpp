@@ -28,8 +28,7 @@ class FeatureSearch {
   std::vector<char> run() {
     grow();
     drop_stubs();
-    double area = 0, kept = 0, left = 0;
-    for (const auto& f : s_.faces) area += 0.5 * (s_.points[f[1]] - s_.points[f[0]]).cross(s_.points[f[2]] - s_.points[f[0]]).norm();
+    double kept = 0, left = 0;
     for (int h = 0; h < static_cast<int>(angle_.size()); ++h) {
       if (s_.opposite[h] < h) continue;
       if (on_[h])
@@ -37,7 +36,7 @@ class FeatureSearch {
       else if (angle_[h] >= options_.weak_angle)
         left += length(h);
     }
-    if (left > options_.most_left * kept || kept < options_.least_total * std::sqrt(area)) return {};
+    if (left > options_.most_left * kept || kept < options_.least_total * std::sqrt(surface_area(s_))) return {};
     return on_;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "surface/triangle_surface.h"
 
+#include <Eigen/Geometry>
 #include <limits>
 #include <string>
 
@@ -19,6 +20,13 @@ bool weights_on(const SurfacePoint& place, int face, const TriangleSurface& surf
       if (surface.faces[place.face][k] == surface.faces[face][i]) weights[i] += place.weights[k], sum += place.weights[k];
   constexpr double rounding = 1e-9;
   return sum > 1 - rounding;
+}
+
+double surface_area(const TriangleSurface& surface) {
+  double area = 0;
+  for (const auto& [a, b, c] : surface.faces)
+    area += 0.5 * (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm();
+  return area;
 }
 
 void connect_half_edges(TriangleSurface& surface) {

@@ -35,6 +35,8 @@ struct TriangleSurface {
 // The weights of a place for the corners of a face; false if it does not lie on the face, an edge or corner of it.
 bool weights_on(const SurfacePoint& place, int face, const TriangleSurface& surface, std::array<double, 3>& weights);
 
+double surface_area(const TriangleSurface& surface);
+
 // Fills `opposite` from `faces`. Throws Error{InvalidInput} if an edge has more than two faces or two faces that run
 // along it in the same direction.
 void connect_half_edges(TriangleSurface& surface);

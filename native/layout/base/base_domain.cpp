@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/base/base_domain.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -105,7 +104,7 @@ class CoarseSurface {
 }  // namespace
 
 BaseDomain::BaseDomain(const TriangleSurface& surface, const FeatureGraph& features, const BaseDomainOptions& options, const Progress& progress)
-    : surface_(surface), features_(surface, features, EditMesh(surface)) {
+    : surface_(surface), features_(features.empty() ? MeshFeatures() : MeshFeatures(surface, features, EditMesh(surface))) {
   // Times the size, how many faces quads are chosen from: room for their clean-up, which merges some of them. Between features, whose vertices stay,
   // more of them make better corners, but not where there is no room for as many.
   const std::vector<double> ways = features.empty() ? std::vector<double>{2.6} : std::vector<double>{5, 3.9, 3.1};
@@ -126,10 +125,7 @@ BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOption
   Decimated made{EditMesh(surface_), {}, {}};
   DecimationOptions decimation;
   decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(faces)});
-  double area = 0;
-  for (const auto& f : surface_.faces)
-    area += 0.5 * (surface_.points[f[1]] - surface_.points[f[0]]).cross(surface_.points[f[2]] - surface_.points[f[0]]).norm();
-  decimation.curve_edge = std::sqrt(area / std::max(1.0, options.size));
+  decimation.curve_edge = std::sqrt(surface_area(surface_) / std::max(1.0, options.size));
   decimation.seed = options.seed;
   decimation.features = &features_;
   std::vector<VertexQuadric> quadrics = decimate(made.mesh, surface_.points, decimation, made.log, progress.part(0, 0.8));

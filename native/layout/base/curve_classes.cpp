@@ -2,10 +2,6 @@
 #include "layout/base/curve_classes.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <numbers>
 
 #include "base/disjoint_sets.h"
 
@@ -37,7 +33,6 @@ class ClassSearch {
         out.curves.emplace_back();
       }
     for (int c = 0; c < features_.curve_count(); ++c) out.curves[number[joined_.find(c)]].push_back(c);
-    std::map<std::array<int, 2>, std::vector<int>> sides;  // piece and class: curves
     for (std::size_t p = 0; p < rims_.size(); ++p) {
       CurveClasses::Piece& piece = out.pieces.emplace_back();
       piece.odd = rims_[p].faces % 2 == 1;
@@ -104,11 +99,7 @@ class ClassSearch {
   }
 
   // 1 at a corner of about a right angle, 2 where the rim goes straight on, more where it turns outwards.
-  int quads_at(int h) const {
-    if (!features_.is_corner(mesh_.from(h))) return 2;
-    const double angle = features_.sector_angle(mesh_, points_, features_.sector(mesh_, h));
-    return std::max(1, static_cast<int>(std::lround(angle / (0.5 * std::numbers::pi))));
-  }
+  int quads_at(int h) const { return features_.regular_quads(mesh_, points_, features_.sector(mesh_, h)); }
 
   void join_opposite(const Rims& rims) {
     if (rims.open) return;

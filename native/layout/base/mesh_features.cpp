@@ -2,6 +2,7 @@
 #include "layout/base/mesh_features.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -105,6 +106,10 @@ double MeshFeatures::sector_angle(const EditMesh& mesh, const std::vector<Vec3>&
     g = mesh.ccw(g);
   } while (g >= 0 && g != sector.last && g != sector.first);
   return angle;
+}
+
+int MeshFeatures::regular_quads(const EditMesh& mesh, const std::vector<Vec3>& points, const Sector& sector) const {
+  return std::max(1, static_cast<int>(std::lround(sector_angle(mesh, points, sector) / (0.5 * std::numbers::pi))));
 }
 
 int MeshFeatures::sector_triangles(const EditMesh& mesh, const Sector& sector) {

@@ -40,6 +40,8 @@ class MeshFeatures {
   Sector sector(const EditMesh& mesh, int h) const;
   // Its angle in radians, pi where the curve goes on, and its triangles.
   double sector_angle(const EditMesh& mesh, const std::vector<Vec3>& points, const Sector& sector) const;
+  // How many quads belong there: one a right angle, at least one.
+  int regular_quads(const EditMesh& mesh, const std::vector<Vec3>& points, const Sector& sector) const;
   static int sector_triangles(const EditMesh& mesh, const Sector& sector);
 
  private:

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace hybrid_mesh {
 namespace {
@@ -77,9 +76,7 @@ int QuadPairs::quads_in(const MeshFeatures::Sector& sector) const {
   return quads;
 }
 
-int QuadPairs::regular_quads(const MeshFeatures::Sector& sector) const {
-  return std::max(1, static_cast<int>(std::lround(features_.sector_angle(mesh_, points_, sector) / (0.5 * std::numbers::pi))));
-}
+int QuadPairs::regular_quads(const MeshFeatures::Sector& sector) const { return features_.regular_quads(mesh_, points_, sector); }
 
 bool QuadPairs::lacks_quads(int h, int fewer) const {
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);

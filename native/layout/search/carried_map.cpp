@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layout/search/carried_map.h"
 
-#include <Eigen/Geometry>
 #include <utility>
 
 #include "parameterization/patch_extraction.h"
 
 namespace hybrid_mesh {
 namespace {
-
-double area_of(const TriangleSurface& surface) {
-  double area = 0;
-  for (const auto& f : surface.faces)
-    area += 0.5 * (surface.points[f[1]] - surface.points[f[0]]).cross(surface.points[f[2]] - surface.points[f[0]]).norm();
-  return area;
-}
 
 std::vector<std::array<int, 3>> faces_of(const EditMesh& mesh) {
   std::vector<std::array<int, 3>> faces(mesh.alive.size());
@@ -50,7 +42,7 @@ void CarriedMap::uncut(const GlobalMapOptions& options, const Progress& progress
   if (log_.empty() || !is_cut_) return;
   ChartMesh coarse = charts;
   const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress);
-  charts = ChartMesh(coarse, collapsed_, surface_->points, area_of(*surface_), vertex_of, sharp_);
+  charts = ChartMesh(coarse, collapsed_, surface_->points, surface_area(*surface_), vertex_of, sharp_);
   is_cut_ = false;
   layout.mesh = *surface_;
   layout.patch.clear();
