@@ -67,7 +67,8 @@ def test_views_are_framed_where_there_are_some(world, capfd):
     for area in areas:
         area.type = "CONSOLE"
     bpy.context.scene.cursor.location = (0, 0, 0)
-    with bpy.context.temp_override(window=None, screen=None, area=None, region=None):
+    # No `screen`: Blender 5 crashes where that one is None.
+    with bpy.context.temp_override(window=None, area=None, region=None):
         assert bpy.ops.hybrid_mesh.show_reason(index=index) == {"FINISHED"}
     assert (bpy.context.scene.cursor.location - tip_of(source)).length < 1e-3
     assert "no 3D view" in capfd.readouterr().out
