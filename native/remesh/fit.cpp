@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "remesh/quality.h"
 
@@ -217,6 +218,16 @@ double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return sum;
 }
 
+// Of unit length, or 0.
+Vec3 face_normal(const QuadMesh& mesh, const std::vector<Vec3>& points, std::size_t f) {
+  const std::int64_t begin = mesh.offsets[f], end = mesh.offsets[f + 1];
+  const Vec3& origin = points[mesh.indices[begin]];
+  Vec3 sum = Vec3::Zero();
+  for (std::int64_t i = begin + 1; i + 1 < end; ++i) sum += (points[mesh.indices[i]] - origin).cross(points[mesh.indices[i + 1]] - origin);
+  const double l = sum.norm();
+  return l > 0 ? Vec3(sum / l) : sum;
+}
+
 std::vector<Vec3> vertex_normals(const QuadMesh& mesh) {
   std::vector<Vec3> normals(mesh.points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -248,6 +259,59 @@ std::vector<double> smoothness_at(const QuadMesh& mesh, const FitOptions& option
   for (std::size_t v = 0; v < worst.size(); ++v)
     smoothness[v] *= std::pow(ratio, std::clamp((worst[v] - options.poor) / (options.square - options.poor), 0.0, 1.0));
   return smoothness;
+}
+
+// The sine of a face's corner, seen along a normal: negative where the face is folded there.
+double corner_sine(const QuadMesh& mesh, const std::vector<Vec3>& points, std::size_t f, int i, const Vec3& normal) {
+  const std::int32_t* v = &mesh.indices[mesh.offsets[f]];
+  const int n = static_cast<int>(mesh.offsets[f + 1] - mesh.offsets[f]);
+  const Vec3 out = points[v[(i + 1) % n]] - points[v[i]], in = points[v[(i + n - 1) % n]] - points[v[i]];
+  const double l = out.norm() * in.norm();
+  return l > 0 ? out.cross(in).dot(normal) / l : 0.0;
+}
+
+constexpr double kLeastSine = 0.05;
+constexpr int kHalvings = 3;  // of a vertex's way, before it stays where it was
+
+// Takes back the ways of vertices that would fold a face, seen from where it looked to before: no corner gets below the least sine, unless it was
+// there.
+void keep_unfolded(QuadMesh& mesh, const std::vector<Vec3>& before) {
+  const std::vector<Vec3> after = mesh.points;
+  std::vector<int> halved(before.size(), 0);
+  std::vector<std::size_t> faces(mesh.face_count());
+  std::iota(faces.begin(), faces.end(), std::size_t{0});
+  std::vector<std::vector<int>> around;
+  while (!faces.empty()) {
+    std::vector<int> back;
+    for (const std::size_t f : faces) {
+      const std::int64_t begin = mesh.offsets[f];
+      const int n = static_cast<int>(mesh.offsets[f + 1] - begin);
+      const Vec3 normal = face_normal(mesh, before, f);
+      bool folded = false;
+      for (int i = 0; i < n && !folded; ++i) {
+        const double sine = corner_sine(mesh, mesh.points, f, i, normal);
+        folded = sine < kLeastSine && sine < corner_sine(mesh, before, f, i, normal);
+      }
+      if (folded)
+        for (int i = 0; i < n; ++i)
+          if (halved[mesh.indices[begin + i]] <= kHalvings) back.push_back(mesh.indices[begin + i]);
+    }
+    std::sort(back.begin(), back.end());
+    back.erase(std::unique(back.begin(), back.end()), back.end());
+    if (back.empty()) return;
+    if (around.empty()) {
+      around.resize(before.size());
+      for (std::size_t f = 0; f < mesh.face_count(); ++f)
+        for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) around[mesh.indices[i]].push_back(static_cast<int>(f));
+    }
+    faces.clear();
+    for (const int v : back) {
+      mesh.points[v] = ++halved[v] > kHalvings ? before[v] : Vec3(before[v] + std::ldexp(1.0, -halved[v]) * (after[v] - before[v]));
+      faces.insert(faces.end(), around[v].begin(), around[v].end());
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  }
 }
 
 }  // namespace
@@ -360,6 +424,7 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
       inverse[v] = (matrix.block[matrix.find(v, v)] + (diagonal + 1e-300) * Eigen::Matrix3d::Identity()).inverse();
     });
     std::vector<Vec3> residual(n), z(n), direction(n), image(n);
+    const std::vector<Vec3> before = mesh.points;
     {
       // The residual at the present positions; fixed vertices enter as data, their own Laplacian being no term.
       std::vector<Vec3> y(n);
@@ -390,6 +455,8 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
       rho = fresh;
       for_all(n, [&](int v) { direction[v] = z[v] + ratio * direction[v]; });
     }
+    // Elsewhere quads that fold for a round find a way around what is bent (a buddha's L2 is 4 % larger without).
+    if (!mesh.sharp.empty()) keep_unfolded(mesh, before);
   }
   progress(1);
 }

@@ -27,7 +27,8 @@ struct FitOptions {
 // Moves the vertices of a polygon mesh so that the weighted mean squared distance of the samples to it becomes least. Vertices with `fixed` set stay.
 // Samples' faces are updated to those that hold their closest points. `share` is the part of the surface that each vertex is meant to stand for, in
 // any unit (a quad's parameter area): the regulariser counts as much there; empty means equal shares. Based on: Hoppe, DeRose, Duchamp, McDonald,
-// Stuetzle, Mesh optimization, 1993 (alternating projection and least squares).
+// Stuetzle, Mesh optimization, 1993 (alternating projection and least squares). Where the mesh has sharp sides, no round folds a face: what would,
+// goes back part of its way.
 void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples,
               const FitOptions& options, const Progress& progress);
 
