@@ -60,6 +60,14 @@ std::vector<int> RepairMesh::components(int& count) const {
 
 namespace {
 
+// Points, scaled into [-1, 1], at multiples of some hundred times a double's precision. What a program computes twice differs by less: 0 in one face
+// is 1e-17 in the next, and would be a crack between them.
+std::vector<Vec3> rounded(std::vector<Vec3> points) {
+  constexpr double unit = 0x1p-46;
+  for (Vec3& p : points) p = (p / unit).array().round() * unit;
+  return points;
+}
+
 // The triangles of the soup over merged points, without those that have a corner twice.
 RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
   const Triangulation triangulation = triangulate(soup);
@@ -67,7 +75,9 @@ RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
     throw Error(ErrorCode::Unsupported, "too many faces: " + std::to_string(triangulation.triangles.size()));
   if (triangulation.triangles.empty()) throw Error(ErrorCode::InvalidInput, "no faces");
   const int point_count = static_cast<int>(soup.points.size());
-  const std::vector<std::int32_t> first = first_coincident(soup.points);
+  RepairMesh mesh;
+  mesh.points = scaled(soup.points, scale_exponent(soup.points));
+  const std::vector<std::int32_t> first = first_coincident(rounded(mesh.points));
   std::vector<char> used(point_count, 0);
   for (const auto& triangle : triangulation.triangles)
     for (const int v : triangle) used[first[v]] = 1;
@@ -76,8 +86,6 @@ RepairMesh gather(const PolygonSoup& soup, RepairReport& report) {
     report.isolated_points += first[p] == p && !used[p];
   }
 
-  RepairMesh mesh;
-  mesh.points = scaled(soup.points, scale_exponent(soup.points));
   mesh.origin.resize(point_count);
   for (int p = 0; p < point_count; ++p) mesh.origin[p] = p;
   for (std::size_t t = 0; t < triangulation.triangles.size(); ++t) {

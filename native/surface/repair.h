@@ -13,7 +13,7 @@ struct RepairOptions {
 
 // How much of each kind was changed; all zero for a clean input.
 struct RepairReport {
-  std::int64_t merged_points = 0;     // points at the same position as an earlier one
+  std::int64_t merged_points = 0;     // points at the same position as an earlier one, but for rounding
   std::int64_t isolated_points = 0;   // points without a face
   std::int64_t duplicate_faces = 0;   // left out; both of a pair of opposite faces where one alone would open a surface
   std::int64_t degenerate_faces = 0;  // two corners coincide, or no area: left out, or flipped where leaving out would open a crack

@@ -144,6 +144,22 @@ TEST(Repair, MergesCoincidentPointsAndDropsIsolatedOnes) {
   EXPECT_EQ(r.topology.euler, 2);
 }
 
+TEST(Repair, ClosesCracksThatRoundingMade) {
+  PolygonSoup soup = cube();  // every face with points of its own, some off by what a computation is off, others by what is meant
+  const std::vector<Vec3> corners = soup.points;
+  for (const double off : {1e-17, 1e-13}) {
+    soup.points.clear();
+    for (std::size_t i = 0; i < soup.indices.size(); ++i) {
+      const Vec3& p = corners[cube().indices[i]];
+      soup.points.push_back(i % 2 ? p : Vec3(p + off * Vec3(1, -1, 1)));
+      soup.indices[i] = static_cast<int>(i);
+    }
+    const Repaired r = repaired(soup);
+    EXPECT_EQ(r.topology.boundary_loops == 0, off < 1e-15);
+    EXPECT_EQ(r.report.merged_points == 16, off < 1e-15);
+  }
+}
+
 TEST(Repair, TurnsAsFewFacesAsPossible) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     PolygonSoup soup = glued_rectangle(10, 8, false, true);
