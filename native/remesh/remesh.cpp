@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "remesh/protrusion.h"
 #include "remesh/quality.h"
 #include "remesh/report.h"
+#include "remesh/verdict.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -88,9 +90,10 @@ void keep_better(Candidate& best, Found<Candidate> other) {
   if (other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2) best = std::move(*other);
 }
 
-// The best of what is tried for a target. Not fitted where some of the topology finds no room to open.
-CandidateSearch best_for(const RemeshTask& task, const Target& target) {
-  CandidateSearch search = search_candidate(task, target, base_requests(task.options, false));
+// The best of what is tried for a target. `another`: with near-ties decided in another way. Not fitted where some of the topology finds no room to
+// open.
+CandidateSearch best_for(const RemeshTask& task, const Target& target, bool another) {
+  CandidateSearch search = search_candidate(task, target, base_requests(task.options, another));
   if (!search.candidate || !search.candidate->unopened.empty()) return search;
   Candidate& best = *search.candidate;
   best = fitted(task, std::move(best), true);
@@ -100,34 +103,44 @@ CandidateSearch best_for(const RemeshTask& task, const Target& target) {
   return search;
 }
 
-// Between sharp sides quads may have no room. A mesh with sharp sides of which so many quads are inverted, or that is so far off (of the diagonal),
-// is compared with one of a finer base; one with many inverted quads with one without sharp sides.
-constexpr double kSomeInverted = 0.001, kManyInverted = 0.005, kFarOff = 0.01;
+// Between sharp sides quads may have no room. A mesh of which so many quads are inverted is compared with one without sharp sides.
+constexpr double kManyInverted = 0.005;
 
 double inverted(const Candidate& c) { return quad_quality(c.final_mesh).inverted; }
 
-// What counts against a mesh: distance, and a good deal more of it where quads are inverted.
-double badness(const Candidate& c) {
+// What counts against a mesh: what makes it poor, then distance, and a good deal more of it where quads are inverted.
+std::pair<std::size_t, double> badness(const RemeshTask& task, const Candidate& c) {
   constexpr double all_inverted = 100;  // times the distance
-  return c.distance.l2 * (1 + all_inverted * inverted(c));
+  return {reasons_against(measured(task, c, task.progress.part(1, 1))).size(), c.distance.l2 * (1 + all_inverted * inverted(c))};
 }
 
 // With the sharp edges of the surface, or, where these cannot be kept or make it worse, without.
 CandidateSearch best_with_features(const RemeshTask& task) {
-  CandidateSearch with = best_for(task, {});
-  if (may_be_finer(task) && (!with.candidate || inverted(*with.candidate) > kSomeInverted || with.candidate->distance.hausdorff > kFarOff)) {
-    CandidateSearch finer = best_for(task, {.levels_less = 1});
-    if (finer.candidate && (!with.candidate || badness(*finer.candidate) < badness(*with.candidate))) with = std::move(finer);
+  // While something makes the mesh poor: a base of which near-ties are decided in another way, then one of four times the quads, which is slower.
+  struct Way {
+    Target target;
+    bool another;
+  };
+  std::vector<Way> ways{{{}, false}};
+  if (may_be_finer(task)) ways.insert(ways.end(), {{{}, true}, {{.levels_less = 1}, false}});
+  std::optional<CandidateSearch> best;
+  std::pair<std::size_t, double> least{std::numeric_limits<std::size_t>::max(), 0};  // of what was not found
+  for (const Way& way : ways) {
+    CandidateSearch found = best_for(task, way.target, way.another);
+    const auto counts = found.candidate ? badness(task, *found.candidate) : least;
+    if (!best || counts < least) best = std::move(found), least = counts;
+    if (least.first == 0) return std::move(*best);
   }
+  CandidateSearch with = std::move(*best);
   if (with.candidate && inverted(*with.candidate) < kManyInverted) return with;
-  CandidateSearch without = best_for(task, {.features = false});
-  if (with.candidate && (!without.candidate || badness(*with.candidate) <= badness(*without.candidate))) return with;
-  if (without.candidate) without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
+  CandidateSearch without = best_for(task, {.features = false}, false);
+  if (!without.candidate || (with.candidate && least <= badness(task, *without.candidate))) return with.candidate ? std::move(with) : without;
+  without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
   return without;
 }
 
 Found<Candidate> best_candidate(const RemeshTask& task) {
-  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_for(task, {});
+  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_for(task, {}, false);
   // What opens late is tried in the base next.
   if (!best.candidate && !task.base.series) throw Error(best.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, best.candidate.reason);
   return std::move(best.candidate);
