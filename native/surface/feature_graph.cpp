@@ -129,6 +129,15 @@ FeatureGraph find_features(const TriangleSurface& surface, const FeatureOptions&
   return feature_graph(surface, FeatureSearch(surface, options).run(), options.corner_angle);
 }
 
+namespace {
+
+bool turns(const Vec3& before, const Vec3& at, const Vec3& after, double degrees) {
+  const Vec3 a = at - before, b = after - at;
+  return std::atan2(a.cross(b).norm(), a.dot(b)) > degrees * kDegree;
+}
+
+}  // namespace
+
 FeatureGraph feature_graph(const TriangleSurface& surface, std::vector<char> edges, double corner_angle) {
   FeatureGraph graph;
   if (std::none_of(edges.begin(), edges.end(), [](char on) { return on; })) return graph;
@@ -141,12 +150,25 @@ FeatureGraph feature_graph(const TriangleSurface& surface, std::vector<char> edg
   }
   for (std::size_t v = 0; v < ends.size(); ++v) {
     if (ends[v].empty()) continue;
-    graph.corners[v] = ends[v].size() != 2 || boundary[v];
-    if (graph.corners[v]) continue;
-    const Vec3 a = surface.points[v] - surface.points[ends[v][0]], b = surface.points[ends[v][1]] - surface.points[v];
-    graph.corners[v] = std::atan2(a.cross(b).norm(), a.dot(b)) > corner_angle * kDegree;
+    graph.corners[v] =
+        ends[v].size() != 2 || boundary[v] || turns(surface.points[ends[v][0]], surface.points[v], surface.points[ends[v][1]], corner_angle);
   }
   graph.edges = std::move(edges);
+  return graph;
+}
+
+FeatureGraph with_boundary(const TriangleSurface& surface, FeatureGraph graph, double corner_angle) {
+  graph.edges.resize(surface.opposite.size());
+  graph.corners.resize(surface.points.size());
+  std::vector<int> before(surface.points.size(), -1);
+  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h)
+    if (surface.opposite[h] < 0) before[surface.to(h)] = surface.from(h);
+  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h) {
+    if (surface.opposite[h] >= 0) continue;
+    graph.edges[h] = 1;
+    const int v = surface.from(h);
+    graph.corners[v] |= turns(surface.points[before[v]], surface.points[v], surface.points[surface.to(h)], corner_angle);
+  }
   return graph;
 }
 

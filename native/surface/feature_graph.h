@@ -35,6 +35,10 @@ FeatureGraph find_features(const TriangleSurface& surface, const FeatureOptions&
 // Corners of the curves made of the edges given.
 FeatureGraph feature_graph(const TriangleSurface& surface, std::vector<char> edges, double corner_angle);
 
+// The same curves, and the surface's boundary as curves of the same kind, with corners where it turns by so many degrees. A boundary edge has one
+// half-edge, and so one mark.
+FeatureGraph with_boundary(const TriangleSurface& surface, FeatureGraph graph, double corner_angle);
+
 // Per point the number of its connected set of feature and boundary edges, -1 for others.
 std::vector<int> curve_components(const TriangleSurface& surface, const std::vector<char>& feature_edges);
 

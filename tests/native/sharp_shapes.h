@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -50,6 +51,38 @@ inline PolygonSoup frame() {
     polygons.push_back({j, i, i + 4, j + 4});
     polygons.push_back({i + 8, j + 8, j + 12, i + 12});
   }
+  return soup_of(points, polygons);
+}
+
+// A block with a hole through it that is wider above a ledge: circles of n points.
+inline PolygonSoup stepped_hole(int n) {
+  const std::vector<std::array<double, 2>> rings{{1.0, 0.0}, {1.0, 1.0}, {1.6, 1.0}, {1.6, 2.0}};  // radius and height, from below
+  std::vector<Vec3> points;
+  std::vector<std::vector<int>> polygons;
+  for (const auto& [radius, z] : rings)
+    for (int i = 0; i < n; ++i)
+      points.push_back({radius * std::cos(2 * std::numbers::pi * i / n), radius * std::sin(2 * std::numbers::pi * i / n), z});
+  for (std::size_t k = 0; k + 1 < rings.size(); ++k)
+    for (int i = 0; i < n; ++i) {
+      const int a = static_cast<int>(k) * n + i, b = static_cast<int>(k) * n + (i + 1) % n;
+      polygons.push_back({b, a, a + n, b + n});
+    }
+  const int block = static_cast<int>(points.size());
+  for (const double z : {0.0, 2.0})
+    for (const Vec2& p : {Vec2(3, 3), Vec2(-3, 3), Vec2(-3, -3), Vec2(3, -3)}) points.push_back({p.x(), p.y(), z});
+  // Floor and lid: from each quarter of a circle to a corner, and from each corner's side to the point between two quarters.
+  for (const int lid : {0, 1}) {
+    const int ring = lid ? 3 * n : 0, corners = block + 4 * lid;
+    const auto add = [&](std::vector<int> polygon) {
+      if (!lid) std::reverse(polygon.begin(), polygon.end());
+      polygons.push_back(polygon);
+    };
+    for (int q = 0; q < 4; ++q) {
+      for (int i = q * n / 4; i < (q + 1) * n / 4; ++i) add({ring + (i + 1) % n, ring + i, corners + q});
+      add({ring + (q + 1) * n / 4 % n, corners + q, corners + (q + 1) % 4});
+    }
+  }
+  for (int q = 0; q < 4; ++q) polygons.push_back({block + (q + 1) % 4, block + q, block + 4 + q, block + 4 + (q + 1) % 4});
   return soup_of(points, polygons);
 }
 

@@ -104,7 +104,14 @@ class CoarseSurface {
 }  // namespace
 
 BaseDomain::BaseDomain(const TriangleSurface& surface, const FeatureGraph& features, const BaseDomainOptions& options, const Progress& progress)
-    : surface_(surface), features_(features.empty() ? MeshFeatures() : MeshFeatures(surface, features, EditMesh(surface))) {
+    : surface_(surface) {
+  if (!features.empty()) {
+    const EditMesh mesh(surface);
+    FeatureGraph graph = with_boundary(surface, features, FeatureOptions().corner_angle);
+    curves_ = MeshFeatures(surface, graph, mesh);
+    graph.edges = features.edges;
+    features_ = MeshFeatures(surface, graph, mesh);
+  }
   // Times the size, how many faces quads are chosen from: room for their clean-up, which merges some of them. Between features, whose vertices stay,
   // more of them make better corners, but not where there is no room for as many.
   const std::vector<double> ways = features.empty() ? std::vector<double>{2.6} : std::vector<double>{5, 3.9, 3.1};
@@ -127,14 +134,14 @@ BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOption
   decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(faces)});
   decimation.curve_edge = std::sqrt(surface_area(surface_) / std::max(1.0, options.size));
   decimation.seed = options.seed;
-  decimation.features = &features_;
+  decimation.features = &curves_;
   std::vector<VertexQuadric> quadrics = decimate(made.mesh, surface_.points, decimation, made.log, progress.part(0, 0.8));
   QuadLayoutOptions layout_options;
   layout_options.size = options.size;
   layout_options.boundary_side = options.boundary_side;
   layout_options.least = options.least;
   layout_options.seed = options.seed;
-  layout_options.features = &features_;
+  layout_options.features = &curves_;
   made.layout = make_quad_layout(made.mesh, surface_.points, std::move(quadrics), layout_options, made.log, progress.part(0.8, 1));
   return made;
 }

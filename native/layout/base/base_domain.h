@@ -52,7 +52,8 @@ class BaseDomain {
   Decimated decimated(double faces, const BaseDomainOptions& options, const Progress& progress) const;
 
   const TriangleSurface& surface_;
-  MeshFeatures features_;
+  MeshFeatures curves_;    // features, and where there are some the boundary too
+  MeshFeatures features_;  // with the corners of both
   Decimated decimated_;
 };
 

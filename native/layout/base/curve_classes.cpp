@@ -38,19 +38,24 @@ class ClassSearch {
       piece.odd = rims_[p].faces % 2 == 1;
       piece.open = rims_[p].open;
       std::vector<int> on_rim;
-      for (const std::vector<int>& loop : rims_[p].loops)
+      for (const std::vector<int>& loop : rims_[p].loops) {
+        const std::size_t before = on_rim.size();
         for (std::size_t i = 0; i < loop.size(); ++i) {
           const int curve = features_.curves()[mesh_.edge[loop[i]]];
-          out.edges[curve] += 1;
-          out.length[curve] += 0.5 * (points_[mesh_.to(loop[i])] - points_[mesh_.from(loop[i])]).norm();
-          if (i == 0 || curve != features_.curves()[mesh_.edge[loop[i - 1]]] || features_.is_corner(mesh_.from(loop[i]))) on_rim.push_back(curve);
+          const int sides = mesh_.opposite[loop[i]] < 0 ? 2 : 1;  // seen from both, if it has two
+          out.edges[curve] += sides;
+          out.length[curve] += 0.5 * sides * (points_[mesh_.to(loop[i])] - points_[mesh_.from(loop[i])]).norm();
+          const int last = features_.curves()[mesh_.edge[loop[(i + loop.size() - 1) % loop.size()]]];
+          if (curve != last || features_.is_corner(mesh_.from(loop[i]))) on_rim.push_back(curve);
         }
+        if (on_rim.size() == before) on_rim.push_back(features_.curves()[mesh_.edge[loop[0]]]);  // closed, without corners
+      }
       std::vector<int> times(out.curves.size(), 0);
       for (const int curve : on_rim) ++times[number[joined_.find(curve)]];
       for (std::size_t k = 0; k < times.size(); ++k)
         if (times[k] % 2 == 1) piece.classes.push_back(static_cast<int>(k));
     }
-    for (int& n : out.edges) n /= 2;  // seen from both sides
+    for (int& n : out.edges) n /= 2;
     return out;
   }
 
@@ -72,9 +77,12 @@ class ClassSearch {
         for (int h = 3 * f; h < 3 * f + 3; ++h) {
           const int o = mesh_.opposite[h], v = mesh_.from(h);
           if (!features_.is_on_curve(v) && !mesh_.is_boundary(v) && !inner[v]) inner[v] = 1, ++rims.inner_vertices;
-          if (o < 0) rims.open = true;
-          if (o < 0 || features_.on(mesh_, h)) {
-            if (o >= 0) rim.push_back(h);
+          if (features_.on(mesh_, h)) {
+            rim.push_back(h);
+            continue;
+          }
+          if (o < 0) {
+            rims.open = true;
             continue;
           }
           ++rims.inner_half_edges;
@@ -174,7 +182,12 @@ std::vector<int> CurveClasses::way_to_even(const std::vector<char>& odd, const s
         return way;
       }
       for (const int k : pieces[p].classes) {
-        if (!usable[k] || pieces_of[k].size() != 2) continue;
+        if (!usable[k] || pieces_of[k].size() > 2) continue;
+        if (pieces_of[k].size() == 1) {  // the boundary has nothing on its other side
+          std::vector<int> way{k};
+          for (; p != static_cast<int>(start); p = before[p]) way.push_back(by[p]);
+          return way;
+        }
         const int other = pieces_of[k][0] == p ? pieces_of[k][1] : pieces_of[k][0];
         if (other == static_cast<int>(start) || by[other] >= 0) continue;
         by[other] = k, before[other] = p;

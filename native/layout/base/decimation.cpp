@@ -31,6 +31,7 @@ struct Candidate {
 // The heap's order: the cheapest on top. Costs may tie, vertices do not.
 bool is_dearer(const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost > b.cost : a.vertex > b.vertex; }
 
+constexpr double kMuchLonger = 1.65;    // times the edges that curves are to have, from where on their length decides
 constexpr int kLeastOfClosedCurve = 4;  // edges: with fewer the quads beside it have straight corners
 
 // When so many times the faces asked for are left, flips begin.
@@ -116,7 +117,7 @@ class Decimation {
     on_curve_.assign(features().curve_count(), 0);
     closed_.assign(features().curve_count(), 1);
     for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h)
-      if (mesh_.alive[h / 3] && mesh_.opposite[h] > h && features().on(mesh_, h)) {
+      if (mesh_.alive[h / 3] && (mesh_.opposite[h] < 0 || mesh_.opposite[h] > h) && features().on(mesh_, h)) {
         const int curve = features().curves()[mesh_.edge[h]];
         ++on_curve_[curve];  // as many edges as vertices, but one more with corners
         for (const int v : {mesh_.from(h), mesh_.to(h)})
@@ -262,7 +263,16 @@ class Decimation {
     return (mine.planes(target) + other.planes(target)) / std::max(mine.area + other.area, 1e-300) + options_.evenness * longest;
   }
 
-  // Times the shape of the new triangles, how far they turn, and valences.
+  // How long the edge of a curve gets that loses a star's vertex along a spoke. Edges much longer than those beside them lie far off a bent curve,
+  // and the quads between them fold.
+  double curve_edge_without(const Star& star, std::size_t spoke) const {
+    for (const Star::Spoke& other : star.spokes)
+      if (other.end != star.spokes[spoke].end && (other.half_edge < 0 || features().on(mesh_, other.half_edge)))
+        return (other.at - star.spokes[spoke].at).norm();
+    return 0;
+  }
+
+  // Times the shape of the new triangles, how far they turn, valences, and the evenness of curves.
   double full_cost(double error, int v, const Star& star, std::size_t spoke) const {
     const int h = star.spokes[spoke].half_edge, u = star.spokes[spoke].end, o = mesh_.opposite[h];
     const Vec3& target = star.spokes[spoke].at;
@@ -287,6 +297,8 @@ class Decimation {
     double valence = misfit(u, valences_[u] + valences_[v] - (mesh_.is_boundary(v) ? 3 : 4)) + misfit(apex, valences_[apex] - 1);
     if (o >= 0) valence += misfit(mesh_.apex(o), valences_[mesh_.apex(o)] - 1);
     error *= 1 + 0.15 * valence;
+    if (!features().empty() && features().on(mesh_, h))
+      error *= 1 + std::pow(curve_edge_without(star, spoke) / (kMuchLonger * options_.curve_edge), 6);
     return error * (1 + 1e-3 * jitter(options_.seed, v));
   }
 

@@ -19,8 +19,10 @@ namespace {
 
 // What a pair of triangles across a feature costs, which no badness of a quad comes near.
 constexpr double kAcross = 1000;
-constexpr double kLacking = 100;  // what it costs that a node on a feature gets a straight corner: more than any distance or shape
-constexpr double kStuck = 100;    // times that, where the edge between them cannot be collapsed
+constexpr double kLacking = 100;   // what it costs that a node on a feature gets a straight corner: more than any distance or shape
+constexpr double kAlone = 10;      // what it costs that a triangle stays alone on the boundary ...
+constexpr double kStraight = 100;  // ... and where the boundary is one of the curves, along which the corner that it gets is straight
+constexpr double kStuck = 100;     // times that, where the edge between them cannot be collapsed
 
 class QuadCoarsening : private QuadPairs {
  public:
@@ -146,7 +148,7 @@ class QuadCoarsening : private QuadPairs {
         if (o >= 0 && o < h) continue;
         if (o < 0) {
           if (!options_.boundary_quads.empty()) continue;
-          candidates.push_back({index[f], -1, -10.0});
+          candidates.push_back({index[f], -1, features_.on(mesh_, h) ? -kStraight : -kAlone});
         } else {
           double b = badness({mesh_.from(h), mesh_.apex(o), mesh_.to(h), mesh_.apex(h)});
           b = features_.on(mesh_, h) ? cost_across(h) : b + diagonal_energy(h) + diagonal_energy(o);

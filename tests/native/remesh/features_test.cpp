@@ -2,8 +2,11 @@
 // Sharp edges of the input, from the base to the mesh.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "codec/container.h"
@@ -153,6 +156,60 @@ TEST(Features, AreSavedAndReplayed) {
     EXPECT_EQ(again.plan, made.plan);
     options.threads = 1;
     EXPECT_EQ(encode_hierarchy(run(solid, options).hierarchy, "{}"), bytes);
+  }
+}
+
+// Between two circles on a ledge there is room for few rows of quads, which must not be pushed across the edges that bound it.
+TEST(Features, QuadsStayBetweenThem) {
+  const PolygonSoup solid = shapes::stepped_hole(24);
+  for (const std::int64_t vertices : {1000, 4000}) {
+    const RemeshResult made = run(solid, bounded(vertices));
+    testing::expect_sound(made);
+    EXPECT_EQ(made.report["verdict"]["result"], "good") << made.report["verdict"];
+    EXPECT_LT(made.report["final"]["scaled_jacobian"]["inverted"].get<double>(), 5e-4);
+    for (std::size_t f = 0; f < made.final_mesh.face_count(); ++f) {
+      std::array<Vec3, 4> p;
+      for (int i = 0; i < 4; ++i) p[i] = made.final_mesh.points[made.final_mesh.indices[4 * f + i]];
+      const Vec3 middle = (p[0] + p[1] + p[2] + p[3]) / 4, normal = (p[2] - p[0]).cross(p[3] - p[1]).normalized();
+      if (std::abs(middle.z() - 1) > 1e-9) continue;
+      EXPECT_GT(normal.z(), 0.999);  // the ledge looks up
+    }
+  }
+}
+
+// Vertices at which two boundary edges of one quad meet.
+int boundary_corners(const QuadMesh& mesh) {
+  std::map<std::pair<int, int>, int> uses;
+  const auto vertex = [&](std::size_t f, int i) { return static_cast<int>(mesh.indices[static_cast<std::int64_t>(4 * f) + i % 4]); };
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    for (int i = 0; i < 4; ++i) ++uses[std::minmax<int>(vertex(f, i), vertex(f, i + 1))];
+  int corners = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    for (int i = 0; i < 4; ++i)
+      corners += uses[std::minmax<int>(vertex(f, i), vertex(f, i + 1))] == 1 && uses[std::minmax<int>(vertex(f, i + 1), vertex(f, i + 2))] == 1;
+  return corners;
+}
+
+// Of each of these solids a wall is missing. Every corner of the hole is on a sharp edge, so that a quad with two sides on the boundary would have a
+// straight corner between them.
+TEST(Features, TheBoundaryIsOneOfTheCurves) {
+  for (const PolygonSoup& solid : {shapes::cube(), shapes::l_prism(), shapes::cylinder(24, 1.5)}) {
+    PolygonSoup open = solid;
+    const auto begin = open.offsets[open.offsets.size() - 2];
+    const std::vector<std::int32_t> missing(open.indices.begin() + begin, open.indices.end());
+    open.indices.resize(begin);
+    open.offsets.pop_back();
+    for (const std::int64_t vertices : {1000, 3000}) {
+      const RemeshResult made = run(open, bounded(vertices));
+      testing::expect_sound(made);
+      EXPECT_EQ(made.report["verdict"]["result"], "good") << made.report["verdict"];
+      EXPECT_EQ(boundary_corners(made.final_mesh), 0);
+      for (const int corner : missing) {
+        double off = 1e300;
+        for (const Vec3& p : made.final_mesh.points) off = std::min(off, (p - open.points[corner]).norm());
+        EXPECT_LT(off, 1e-12);
+      }
+    }
   }
 }
 
