@@ -2,7 +2,8 @@
 """Runs Instant Meshes on one mesh of triangles: instant_meshes_run.py IN.npz OUT.npz VERTICES
 
 VERTICES is what the pure quad mesh is to have; the library's own target is a quarter of it, because it splits every face once. It is
-driven through files: what its remesh() returns has been read back as triangles."""
+driven through files: what its remesh() returns has been read back as triangles. IN's sharp_angle, if it is a number of degrees, is the crease angle; directions are then smoothed
+extrinsically, as the program does unless told otherwise and the module does not, because that aligns them with creases."""
 
 import sys
 import tempfile
@@ -36,18 +37,21 @@ def main(source, target, vertices):
     with tempfile.TemporaryDirectory() as folder:
         original, remesh = Path(folder) / "in.obj", Path(folder) / "out.obj"
         write_obj(original, data["points"], data["indices"].reshape(-1, 3))
-        start = time.perf_counter()
+        sharp = not np.isnan(data["sharp_angle"])
+        start, cpu_start = time.perf_counter(), time.process_time()
         pyinstantmeshes.remesh_file(
             str(original),
             str(remesh),
             target_vertex_count=max(1, round(vertices / 4)),
+            crease_angle=float(data["sharp_angle"]) if sharp else -1.0,
+            extrinsic=sharp,
             pure_quad=True,
             align_to_boundaries=bool(data["has_boundary"]),
             deterministic=True,
         )
-        seconds = time.perf_counter() - start
+        seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start
         points, offsets, indices = read_obj(remesh)
-    np.savez(target, points=points, offsets=offsets, indices=indices, seconds=seconds, changed=True)
+    np.savez(target, points=points, offsets=offsets, indices=indices, seconds=seconds, cpu_seconds=cpu_seconds, changed=True)
 
 
 main(sys.argv[1], sys.argv[2], int(sys.argv[3]))

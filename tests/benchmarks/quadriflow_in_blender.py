@@ -3,13 +3,24 @@
 blender --background --factory-startup --python quadriflow_in_blender.py -- IN.npz OUT.npz FACES
 
 IN and OUT hold points, offsets and indices; OUT also the seconds that the operator took, and `changed`, because the operator ends as
-FINISHED even where it has left the mesh alone."""
+FINISHED even where it has left the mesh alone. If IN's sharp_angle is a number of degrees, the edges at which the surface turns by more are marked as
+sharp, and sharp edges and boundaries are to be preserved. QuadriFlow does not look at the marks: sharp to it is what turns by more than 60 degrees."""
 
 import sys
 import time
 
 import bpy
 import numpy as np
+
+
+def mark_sharp(item, angle):
+    """All edges at which the surface turns by more than an angle in radians."""
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.tool_settings.mesh_select_mode = (False, True, False)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.mesh.edges_select_sharp(sharpness=angle)
+    bpy.ops.mesh.mark_sharp()
+    bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def main(source, target, faces):
@@ -34,13 +45,17 @@ def main(source, target, faces):
     bpy.context.scene.collection.objects.link(item)
     bpy.context.view_layer.objects.active = item
     item.select_set(True)
-    boundary = bool(data["has_boundary"])
+    angle = float(data["sharp_angle"])
+    sharp = not np.isnan(angle)
+    if sharp:
+        mark_sharp(item, np.radians(angle))
+    boundary = sharp or bool(data["has_boundary"])
     before = (len(mesh.vertices), len(mesh.polygons))
-    start = time.perf_counter()
+    start, cpu_start = time.perf_counter(), time.process_time()
     status = bpy.ops.object.quadriflow_remesh(
-        use_mesh_symmetry=False, use_preserve_sharp=False, use_preserve_boundary=boundary, mode="FACES", target_faces=faces, seed=0
+        use_mesh_symmetry=False, use_preserve_sharp=sharp, use_preserve_boundary=boundary, mode="FACES", target_faces=faces, seed=0
     )
-    seconds = time.perf_counter() - start
+    seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start
     mesh = item.data
     changed = "FINISHED" in status and before != (len(mesh.vertices), len(mesh.polygons))
     result = np.empty(len(mesh.vertices) * 3, np.float32)
@@ -55,6 +70,7 @@ def main(source, target, faces):
         offsets=np.concatenate([[0], np.cumsum(totals, dtype=np.int64)]),
         indices=corners,
         seconds=seconds,
+        cpu_seconds=cpu_seconds,
         changed=changed,
     )
 

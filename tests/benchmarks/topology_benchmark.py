@@ -35,7 +35,7 @@ def measured(mesh, *what):
     with tempfile.TemporaryDirectory() as folder:
         source, result = Path(folder) / "in.npz", Path(folder) / "out.json"
         np.savez(source, points=mesh[0], offsets=mesh[1], indices=mesh[2])
-        code, output, _ = tools.run(["/usr/bin/python3", tools.HERE / "timed_loops.py", source, result, *what], {"PYTHONPATH": str(tools.STAGE)})
+        code, output, *_ = tools.run(["/usr/bin/python3", tools.HERE / "timed_loops.py", source, result, *what], {"PYTHONPATH": str(tools.STAGE)})
         if code != 0:
             raise tools.Failure(f"exit code {code}: {tools.last_complaint(output)}")
         return json.loads(result.read_text())
