@@ -54,18 +54,29 @@ def parser(name, description, rows):
     return made
 
 
-def parse(made, argv):
-    """(arguments with the models' `paths`, options for our own command line)."""
+def meshes_in(folder):
+    return sorted(path.resolve() for path in folder.iterdir() if path.suffix.lower() in SUFFIXES)
+
+
+def models_of(folder):
+    """What is measured: all meshes of a folder, or of the default one."""
+    return meshes_in(folder or default_folder())
+
+
+def parse(made, argv, models_of=models_of):
+    """(arguments with the models' `paths`, options for our own command line). models_of: the paths for a folder, or for None where none is given."""
     end = argv.index("--") if "--" in argv else len(argv)
     arguments, options = made.parse_args(argv[:end]), argv[end + 1 :]
-    arguments.folder = arguments.folder or default_folder()
-    arguments.paths = sorted(path.resolve() for path in arguments.folder.iterdir() if path.suffix.lower() in SUFFIXES)
+    if arguments.folder and not arguments.folder.is_dir():
+        made.error(f"there is no folder {arguments.folder}")
+    arguments.paths = models_of(arguments.folder)
+    where = arguments.folder or default_folder()
     if arguments.models:
         names = arguments.models.split(",")
         missing = set(names) - {path.stem for path in arguments.paths}
         if missing:
-            made.error(f"{arguments.folder} has no {', '.join(sorted(missing))}")
+            made.error(f"{where} has no {', '.join(sorted(missing))}")
         arguments.paths = [path for path in arguments.paths if path.stem in names]
     if not arguments.paths:
-        made.error(f"no meshes in {arguments.folder}")
+        made.error(f"no meshes in {where}")
     return arguments, options + (["--adaptive"] if arguments.adaptive else [])
