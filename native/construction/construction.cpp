@@ -22,8 +22,14 @@ HybridMesh hierarchy_of(const QuadGraph& base) {
 
 }  // namespace
 
-Construction::Construction(const QuadGraph& base, double area, SurfaceVersion surface)
-    : mesh_(hierarchy_of(base)), quads_(base), maps_(base.patch_count()), area_(area), surface_(std::move(surface)), nodes_(base.patch_count()) {
+Construction::Construction(const QuadGraph& base, double area, SurfaceVersion surface, std::shared_ptr<const SizeField> sizes)
+    : mesh_(hierarchy_of(base)),
+      quads_(base),
+      maps_(base.patch_count()),
+      area_(area),
+      surface_(std::move(surface)),
+      sizes_(std::move(sizes)),
+      nodes_(base.patch_count()) {
   std::iota(nodes_.begin(), nodes_.end(), 0);
   for (int q = 0; q < base.patch_count(); ++q) root_number_.push_back({q, q});
   begin_level();

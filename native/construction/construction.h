@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace hybrid_mesh {
 class Construction {
  public:
   // `area`: of the surface that the quads are mapped to, which is of unit size; `surface`: its version.
-  Construction(const QuadGraph& base, double area, SurfaceVersion surface = {});
+  // `sizes`: see LevelState; with them the area is that in their metric.
+  Construction(const QuadGraph& base, double area, SurfaceVersion surface = {}, std::shared_ptr<const SizeField> sizes = {});
   // A hierarchy with its maps and the state of one of its levels, which is refined to that level everywhere; `root_numbers`: of its root quads in
   // addresses, by node. Throws Error{InvalidInput} if a finer level has operations or there is a quad without a map.
   Construction(HybridMesh hierarchy, const std::vector<int>& root_numbers, int level);
@@ -24,7 +26,7 @@ class Construction {
   int level() const { return level_; }
   const AddressedGraph& quads() const { return quads_; }  // of the level, after its edits so far
   int node(int patch) const { return nodes_[patch]; }     // of the hierarchy; before the level's first edit, and once closed
-  LevelState state() const { return {quads_.graph(), maps_, area_, placement_, surface_}; }
+  LevelState state() const { return {quads_.graph(), maps_, area_, placement_, surface_, sizes_}; }
   const SurfaceVersion& surface() const { return surface_; }
 
   void apply(MappedEdit mapped);
@@ -65,6 +67,7 @@ class Construction {
   double area_ = 0;            // see LevelState
   Placement placement_;
   SurfaceVersion surface_;
+  std::shared_ptr<const SizeField> sizes_;
   std::vector<std::pair<int, int>> root_number_;  // node, number
   std::vector<std::pair<int, int>> opened_;       // node, event
   bool closed_ = false;

@@ -6,7 +6,7 @@
 namespace hybrid_mesh {
 
 LevelState quadrisected(const LevelState& state) {
-  LevelState finer{quadrisected(state.quads), {}, state.area, state.placement, state.surface};
+  LevelState finer{quadrisected(state.quads), {}, state.area, state.placement, state.surface, state.sizes};
   for (const QuadMap& m : state.maps)
     for (int k = 0; k < 4; ++k) finer.maps.push_back({m.map, m.square.quadrant(k)});
   return finer;

@@ -30,9 +30,10 @@ struct SurfaceVersion {
 struct LevelState {
   QuadGraph quads;
   std::vector<QuadMap> maps;  // per quad
-  double area = 0;            // of the surface where the maps have it
+  double area = 0;            // of the surface where the maps have it; with sizes, in their metric
   Placement placement;        // that brings the maps to unit size: operations are as good wherever the surface stands and however large it is
   SurfaceVersion surface;
+  std::shared_ptr<const SizeField> sizes;  // of quads, on the surface in unit size; none: they are to be even
 };
 
 // The next level, before any operation.

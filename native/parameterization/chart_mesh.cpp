@@ -6,6 +6,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -37,7 +38,7 @@ Transition across(int side, int other_side) {
 }
 
 ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners)
-    : mesh(surface.mesh), points(surface.mesh.points), chart(surface.patch) {
+    : mesh(surface.mesh), points(surface.mesh.points), fineness(fineness_at_points(surface.mesh)), chart(surface.patch), sizes_(surface.mesh.sizes) {
   const TriangleSurface& fine = surface.mesh;
   const int faces = static_cast<int>(fine.faces.size());
   gluing.resize(3 * faces);
@@ -45,7 +46,10 @@ ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array
   uv.assign(points.size(), Complex(0, 0));
   kind.assign(points.size(), Kind::Free);
   double area = 0;
-  for (const auto& f : fine.faces) area += 0.5 * (points[f[1]] - points[f[0]]).cross(points[f[2]] - points[f[0]]).norm();
+  for (const auto& f : fine.faces) {
+    const double finer = fineness_on_face(fineness, f[0], f[1], f[2]);
+    area += 0.5 * (points[f[1]] - points[f[0]]).cross(points[f[2]] - points[f[0]]).norm() * finer * finer;
+  }
   scale = std::sqrt(surface.patch_count() / area);
 
   // Half-edges along the patches' sides.
@@ -120,9 +124,14 @@ void ChartMesh::hold_features(const std::vector<char>& corner) {
   }
 }
 
-ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
-                     const std::vector<int>& vertex_of, std::vector<char> sharp_edges)
-    : mesh(collapsed), points(fine_points), sharp(std::move(sharp_edges)), scale(charts.scale) {
+ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const TriangleSurface& fine, const std::vector<int>& vertex_of,
+                     std::vector<char> sharp_edges)
+    : mesh(collapsed),
+      points(fine.points),
+      fineness(fineness_at_points(fine)),
+      sharp(std::move(sharp_edges)),
+      scale(charts.scale),
+      sizes_(fine.sizes) {
   const std::size_t halves = collapsed.origin.size();
   uv.assign(points.size(), Complex(0, 0));
   kind.assign(points.size(), Kind::Free);
@@ -133,9 +142,10 @@ ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const s
   for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f)
     if (charts.mesh.alive[f]) {
       const Vec3& a = charts.points[charts.mesh.origin[3 * f]];
-      area += 0.5 * (charts.points[charts.mesh.origin[3 * f + 1]] - a).cross(charts.points[charts.mesh.origin[3 * f + 2]] - a).norm();
+      const double finer = charts.finer_on(f);
+      area += 0.5 * (charts.points[charts.mesh.origin[3 * f + 1]] - a).cross(charts.points[charts.mesh.origin[3 * f + 2]] - a).norm() * finer * finer;
     }
-  scale *= std::sqrt(area / fine_area);
+  scale *= std::sqrt(area / measured_area(fine));
   if (charts.mesh.face_count != collapsed.face_count) throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
   for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f) {
     if (!charts.mesh.alive[f]) continue;
@@ -171,7 +181,7 @@ const FlatTriangle& ChartMesh::flat(int f) const {
   Flat& known = flat_[flat_at_[f]];
   const int a = mesh.origin[3 * f], b = mesh.origin[3 * f + 1], c = mesh.origin[3 * f + 2];
   if (known.corners[0] != a || known.corners[1] != b || known.corners[2] != c || known.scale != scale)
-    known = {{a, b, c}, scale, flatten(points[a], points[b], points[c], scale)};
+    known = {{a, b, c}, scale, flatten(points[a], points[b], points[c], scale * fineness_on_face(fineness, a, b, c))};
   return known.triangle;
 }
 
@@ -181,8 +191,16 @@ void ChartMesh::remember_flat() const {
     if (mesh.alive[f]) flat(f);
 }
 
+double ChartMesh::finer_on(int f) const { return fineness_on_face(fineness, mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]); }
+
+double ChartMesh::squared_length(int a, int b) const {
+  const double finer = fineness.empty() ? 1.0 : 0.5 * (fineness[a] + fineness[b]);
+  return (points[b] - points[a]).squaredNorm() * finer * finer;
+}
+
 void ChartMesh::move_point(int v, const Vec3& place) {
   points[v] = place;
+  if (!fineness.empty()) fineness[v] = sizes_->fineness(place);
   for (Flat& known : flat_)
     if (std::find(known.corners.begin(), known.corners.end(), v) != known.corners.end()) known.corners = {-1, -1, -1};
 }
@@ -216,8 +234,8 @@ bool ChartMesh::collapse_keeps_map(int h, double least_determinant, double least
       good = false;
       return;
     }
-    const double signed_area = 0.5 * cross(b - a, target - a);
-    if (!(signed_area > least_determinant * 0.5 * area * scale * scale)) good = false;
+    const double signed_area = 0.5 * cross(b - a, target - a), length = scale * fineness_on_face(fineness, p, q, u);
+    if (!(signed_area > least_determinant * 0.5 * area * length * length)) good = false;
     fan += std::arg((b - target) * std::conj(a - target));
   });
   // v could not come back into a fan of a full turn, which only a cone of five or more quads has room for. The fan may still widen, and u become

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "parameterization/distortion.h"
@@ -53,11 +54,11 @@ class ChartMesh {
   // From patches mapped to unit squares, (u, v) a face's corner.
   ChartMesh(const PatchedSurface& surface, const std::vector<std::array<Vec2, 3>>& corners);
 
-  // The same charts over another mesh with the same triangles: one that was collapsed from a finer surface of area `fine_area`, whose points are
-  // `fine_points`. `vertex_of`: per vertex of `charts` that is alive its vertex there; `sharp_edges`: per name of an edge of `collapsed` whether it
-  // is on a feature, empty for none. What was collapsed comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
-  ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const std::vector<Vec3>& fine_points, double fine_area,
-            const std::vector<int>& vertex_of, std::vector<char> sharp_edges);
+  // The same charts over another mesh with the same triangles: one that was collapsed from the surface `fine`. `vertex_of`: per vertex of `charts`
+  // that is alive its vertex there; `sharp_edges`: per name of an edge of `collapsed` whether it is on a feature, empty for none. What was collapsed
+  // comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
+  ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const TriangleSurface& fine, const std::vector<int>& vertex_of,
+            std::vector<char> sharp_edges);
 
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
   bool movable(int v) const { return kind[v] == Kind::Free || kind[v] == Kind::SlideU || kind[v] == Kind::SlideV; }
@@ -67,8 +68,10 @@ class ChartMesh {
   // Remembers those of all faces that are alive: as long as nothing but positions changes, flat() only reads, and may be called from several threads.
   void remember_flat() const;
   void move_point(int v, const Vec3& place);  // on the surface
-  double determinant(int f) const;            // of the map from the flattened triangle
-  double angle_at(int v) const;               // sum of the triangles' angles in the charts
+  // Of the edge between two vertices, as even quads count it.
+  double squared_length(int a, int b) const;
+  double determinant(int f) const;  // of the map from the flattened triangle
+  double angle_at(int v) const;     // sum of the triangles' angles in the charts
 
   bool can_collapse(int h) const;  // keeps cones, pinned vertices, boundaries and features; says nothing of the map
   bool is_sharp(int h) const { return !sharp.empty() && sharp[mesh.edge[h]]; }
@@ -92,6 +95,7 @@ class ChartMesh {
 
   EditMesh mesh;
   std::vector<Vec3> points;        // changed by move_point() alone
+  std::vector<double> fineness;    // per vertex, of the surface's field of sizes, by which lengths count more there; empty: it has none
   std::vector<Complex> uv;         // per vertex, in its own frame
   std::vector<Kind> kind;          // per vertex
   std::vector<int> chart;          // per face: the patch whose square its chart continues
@@ -102,7 +106,10 @@ class ChartMesh {
 
  private:
   bool place(int v);
+  double finer_on(int f) const;
   void hold_features(const std::vector<char>& corner);
+
+  std::shared_ptr<const SizeField> sizes_;
 
   struct Flat {
     std::array<int, 3> corners{-1, -1, -1};

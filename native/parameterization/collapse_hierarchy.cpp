@@ -34,7 +34,7 @@ void CollapseHierarchy::collapse(int target) {
       double shortest = 1e300;
       int h = c_.mesh.out[v];
       do {
-        shortest = std::min(shortest, (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm());
+        shortest = std::min(shortest, c_.squared_length(v, c_.mesh.to(h)));
         h = c_.mesh.ccw(h);
       } while (h >= 0 && h != c_.mesh.out[v]);
       order.push_back({shortest, v});
@@ -50,7 +50,7 @@ void CollapseHierarchy::collapse(int target) {
       std::vector<std::pair<double, int>> halves;
       int h = c_.mesh.out[v];
       do {
-        if (!c_.slides_inside(v) || c_.is_sharp(h)) halves.push_back({(c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm(), h});
+        if (!c_.slides_inside(v) || c_.is_sharp(h)) halves.push_back({c_.squared_length(v, c_.mesh.to(h)), h});
         if (c_.mesh.is_boundary(v)) break;
         h = c_.mesh.ccw(h);
       } while (h >= 0 && h != c_.mesh.out[v]);

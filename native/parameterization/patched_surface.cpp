@@ -55,6 +55,7 @@ PatchedPart part_of(const PatchedSurface& surface, const std::vector<int>& patch
     }
   const int faces = static_cast<int>(part.face.size());
   TriangleSurface& mesh = part.surface.mesh;
+  mesh.sizes = whole.sizes;
   mesh.opposite.resize(3 * faces);
   for (int f = 0; f < faces; ++f)
     for (int i = 0; i < 3; ++i) {

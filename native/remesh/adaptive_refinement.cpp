@@ -195,29 +195,43 @@ class AdaptiveRefinement {
     return options;
   }
 
-  static Fitted fitted(HybridMesh hierarchy, const Progress& progress) {
+  Fitted fitted(HybridMesh hierarchy, const Progress& progress) const {
     Fitted result{std::move(hierarchy), {}};
     result.mesh = result.hierarchy.final_mesh();
-    fit_to_surface(result.mesh, result.hierarchy, final_fit(), progress);
+    SurfaceFitOptions options = final_fit();
+    options.sizes = options_.sizes;
+    fit_to_surface(result.mesh, result.hierarchy, options, progress);
     return result;
+  }
+
+  // By how much the error at a sample counts more. A leaf's squared distances, summed over its area, fall with the sixth power of its size where the
+  // surface is smooth: so leaves get the sizes that are wanted where the shape asks for equal ones.
+  std::vector<double> importance_of(const std::vector<FitSample>& samples) const {
+    if (!options_.sizes) return {};
+    std::vector<Vec3> at;
+    for (const FitSample& s : samples) at.push_back(s.position);
+    std::vector<double> importance = options_.sizes->fineness(at);
+    for (double& x : importance) x = std::pow(x, 6);
+    return importance;
   }
 
   double distance(const QuadMesh& mesh, const Progress& progress) const { return surface_.distance(to_soup(mesh), DistanceOptions(), progress).l2; }
 
-  static LeafErrors errors_of(const LeafMesh& leaves, const Progress& progress) {
+  LeafErrors errors_of(const LeafMesh& leaves, const Progress& progress) const {
     const HybridMesh closed = leaves.closed();
     QuadMesh mesh = closed.final_mesh();
-    const SurfaceSamples samples(closed, fit_sample_count(mesh.points.size()), HybridMesh::max_level);
+    const SurfaceSamples samples(closed, fit_sample_count(mesh.points.size()), HybridMesh::max_level, options_.sizes);
     std::vector<FitSample> on = samples.on(closed, mesh);
-    fit_mesh(mesh, held_vertices(mesh), parameter_shares(closed, mesh), on, final_fit().first, progress);
+    fit_mesh(mesh, held_vertices(mesh), parameter_shares(closed, mesh, options_.sizes), on, final_fit().first, progress);
     const std::vector<double> squared = squared_distances(mesh, on);
     LeafErrors errors;
     errors.squared.assign(leaves.hierarchy().node_count(), 0);
+    const std::vector<double> importance = importance_of(on);
     double weight = 0;
     for (std::size_t i = 0; i < on.size(); ++i) {
       int node = mesh.node[on[i].face];
       if (node >= leaves.hierarchy().node_count()) node = closed.parent(node);
-      errors.squared[node] += on[i].weight * squared[i];
+      errors.squared[node] += on[i].weight * squared[i] * (importance.empty() ? 1.0 : importance[i]);
       errors.l2 += on[i].weight * squared[i];
       weight += on[i].weight;
     }

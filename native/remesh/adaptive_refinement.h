@@ -7,6 +7,7 @@
 #include "base/limits.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "surface/distance.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 
@@ -14,6 +15,8 @@ struct AdaptiveOptions {
   std::int64_t vertices = 0;          // hard upper bound on the mesh's vertices; 0 = as many as the error takes, up to four million
   double error = 0;                   // stop at this l2 (relative to the bounding-box diagonal); 0 = none
   int deepest = limits::most_levels;  // finest level of a leaf
+  // Of quads, in the maps' space: where these are to be smaller, errors count more. None: errors count the same everywhere.
+  const SizeField* sizes = nullptr;
 };
 
 // The vertices of the mesh of a hierarchy's leaves, closed as the hierarchy says.

@@ -18,6 +18,7 @@
 #include "remesh/outlines.h"
 #include "remesh/quality.h"
 #include "remesh/skin.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -38,7 +39,7 @@ int least_quads(const TopologySummary& topology) {
 
 // The construction of a base, whose quads get their maps.
 Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
-  Construction made(map.layout.graph(), surface_area(working.mesh), task.base.version());
+  Construction made(map.layout.graph(), measured_area(working.mesh), task.base.version(), working.mesh.sizes);
   for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
     for (int i = 0; i < 4; ++i)
       if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
@@ -195,7 +196,7 @@ const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
     surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), task.base.held(),
-                                    feature_options(features, angle));
+                                    feature_options(features, angle), task.source.density.sizes);
     faces_ = faces;
     features_ = features;
   }

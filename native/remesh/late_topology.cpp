@@ -10,6 +10,7 @@
 #include "base/found.h"
 #include "layout/operations/topology_opening.h"
 #include "remesh/plan_regions.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -51,6 +52,13 @@ class LateOpening {
     return out;
   }
 
+  // Of the event's loop in unit size, as the level's quads count it.
+  double length_of(const LevelState& state, int e) const {
+    const SurfaceSeries& series = *state.surface.series;
+    const double length = series.events[e].length / task_.source.placement.diagonal;
+    return state.sizes ? length * state.sizes->fineness(series.input.points[series.events[e].loops[0].front()]) : length;
+  }
+
   // `last`: what is too small to be shown may open as well.
   void open_level(bool last) {
     const LevelState first = made_.state();
@@ -58,7 +66,7 @@ class LateOpening {
     for (const int e : closed()) {
       task_.progress.check();
       const int level = task_.base.levels[e];
-      const double length = first.surface.series->events[e].length / task_.source.placement.diagonal;
+      const double length = length_of(first, e);
       if (made_.level() < level) {
         reasons_[e] = "the mesh does not have the level on which it is to open";
         continue;

@@ -60,6 +60,11 @@ class ClosedSurfaces {
   std::vector<std::shared_ptr<const DistanceReference>> at_level_;
 };
 
+SurfaceFitOptions sized(SurfaceFitOptions options, const RemeshTask& task) {
+  options.sizes = task.source.density.sizes.get();
+  return options;
+}
+
 }  // namespace
 
 SurfaceFitOptions level_fit(bool finest, int level) {
@@ -87,7 +92,7 @@ void fit_uniform(const RemeshTask& task, Candidate& c, int level) {
   task.watch.start("fit");
   c.hierarchy.refine_uniform(std::max(level, c.finest));
   c.final_mesh = c.hierarchy.level_mesh(level);
-  fit_to_surface(c.final_mesh, c.hierarchy, level_fit(true, level), task.progress.part(0.6, 0.8));
+  fit_to_surface(c.final_mesh, c.hierarchy, sized(level_fit(true, level), task), task.progress.part(0.6, 0.8));
 }
 
 void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
@@ -97,6 +102,7 @@ void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
   // An error bound alone asks for as few vertices as meet it, however many that are.
   adaptive.vertices = task.options.error > 0 && task.options.vertices == 0 ? 0 : vertices;
   adaptive.error = task.options.error;
+  adaptive.sizes = task.source.density.sizes.get();
   if (task.options.levels >= 0) adaptive.deepest = task.options.levels;
   c.final_mesh = refine_adaptively(c.hierarchy, *task.source.reference, adaptive, task.progress.part(0.55, 0.8));
 }
@@ -117,7 +123,7 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
     QuadMesh& mesh = c.level_meshes[j];
     mesh = last ? c.final_mesh : c.hierarchy.level_mesh(j);
     if (!last) {
-      SurfaceFitOptions options = level_fit(false, j);
+      SurfaceFitOptions options = sized(level_fit(false, j), task);
       // A level that is nearly the final mesh begins with that and has little left to do.
       if (fitted.place(mesh)) options.turns = 0;
       fit_to_surface(mesh, c.hierarchy, options, part);

@@ -37,6 +37,7 @@ struct RemeshOptions {
   Features features = Features::Auto;
   double feature_angle = 40;   // degrees between the normals of two faces; with Features::Given
   double drop_components = 0;  // see RepairOptions
+  std::string density;         // name of the attribute that the input's `density` holds, see density.h; empty: quads are even
   bool strict = false;         // refuse input that needs repair
   std::uint64_t seed = 1;
   std::string plan;  // JSON text, see Plan: what decides base and operations instead of a search; empty: none

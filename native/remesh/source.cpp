@@ -86,7 +86,8 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
   source.topology = summarize_topology(to_soup(source.repaired));
   source.area = surface_area(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
   look_for_features(source, options);
-  source.fingerprint = fingerprint(source.repaired);
+  source.density = read_density(input, options.density, source.repaired, source.placement);
+  source.fingerprint = fingerprint(source.repaired, source.density.sizes ? source.density.values : std::vector<double>());
   PolygonSoup unit = input;
   for (Vec3& p : unit.points) p = source.placement.to_unit(p);
   source.reference = std::make_unique<const DistanceReference>(unit);

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "remesh/base_surface.h"
+#include "remesh/density.h"
 #include "remesh/remesh.h"
 #include "remesh/stopwatch.h"
 #include "remesh/working_surface.h"
@@ -26,6 +27,7 @@ struct Source {
   bool has_features = false;    // sharp edges of the kind that is asked for
   bool keeps_features = false;  // ... and is there room for them in the mesh that is asked for?
   int feature_corners = 0;      // where they end, meet or turn
+  Density density;              // that quads are to have
   std::string fingerprint;
   std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
 };

@@ -3,21 +3,24 @@
 
 #include "hierarchy/hybrid_mesh.h"
 #include "remesh/fit.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 
 struct SurfaceFitOptions {
-  FitOptions first;     // the fit that comes first
-  int turns = 2;        // of angle relaxation and fit after it
-  int finest = 64;      // leaves finer than this level count as one of it, as in a mesh of that level
-  double unfold = 1.0;  // how far folded quads' vertices may go at the end, in lengths of their shortest edge
+  FitOptions first;                  // the fit that comes first
+  int turns = 2;                     // of angle relaxation and fit after it
+  int finest = 64;                   // leaves finer than this level count as one of it, as in a mesh of that level
+  const SizeField* sizes = nullptr;  // of the quads, in the maps' space; none: those of a level are even
+  double unfold = 1.0;               // how far folded quads' vertices may go at the end, in lengths of their shortest edge
 };
 
 // The samples that a mesh of so many vertices is fitted to.
 std::int64_t fit_sample_count(std::size_t vertices);
 
-// The parameter area of the quads around each vertex of a mesh taken from the hierarchy: the `share` of fit_mesh.
-std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh);
+// The parameter area of the quads around each vertex of a mesh taken from the hierarchy: the `share` of fit_mesh. With sizes, as much of the
+// surface as quads of these sizes cover.
+std::vector<double> parameter_shares(const HybridMesh& hierarchy, const QuadMesh& mesh, const SizeField* sizes = nullptr);
 
 // Moves the vertices of a mesh, all but those of its boundary, to where it comes closest to the samples while its quads keep their shape. Lengths are
 // of a surface of unit size. `share`: see fit_mesh().

@@ -49,27 +49,30 @@ std::vector<int> map_owners(const HybridMesh& hierarchy, int finest) {
 
 }  // namespace
 
-SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest)
-    : SurfaceSamples(hierarchy, map_owners(hierarchy, finest), count, finest) {}
+SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest, const SizeField* sizes)
+    : SurfaceSamples(hierarchy, map_owners(hierarchy, finest), count, finest, sizes) {}
 
-SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, const std::vector<int>& owners, std::int64_t count, int finest) {
+SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, const std::vector<int>& owners, std::int64_t count, int finest, const SizeField* sizes) {
   double total = 0;
   const auto normal_of = [](const PatchMap& m, const std::array<int, 3>& t) {
     return Vec3((m.positions[t[1]] - m.positions[t[0]]).cross(m.positions[t[2]] - m.positions[t[0]]));
   };
   // A triangle may reach over into where its map does not count: judged by a few of its points.
-  const auto density_of = [&](int owner, const PatchMap& m, const std::array<int, 3>& t) {
+  const auto density_of = [&](int owner, const PatchMap& m, const std::array<int, 3>& t, const std::vector<double>& finer) {
     const Vec2 c = (m.uv[t[0]] + m.uv[t[1]] + m.uv[t[2]]) / 3;
     double sum = fineness(hierarchy, owner, c.x(), c.y(), finest);
     for (const int v : t) {
       const Vec2 p = 0.3 * c + 0.7 * m.uv[v];
       sum += fineness(hierarchy, owner, p.x(), p.y(), finest);
     }
-    return sum / 4;
+    const double length = fineness_on_face(finer, t[0], t[1], t[2]);
+    return sum / 4 * length * length;
   };
+  const auto finer_at = [&](const PatchMap& m) { return sizes ? sizes->fineness(m.positions) : std::vector<double>(); };
   for (const int owner : owners) {
     const PatchMap& map = *hierarchy.map(owner);
-    for (const auto& t : map.triangles) total += 0.5 * normal_of(map, t).norm() * density_of(owner, map, t);
+    const std::vector<double> finer = finer_at(map);
+    for (const auto& t : map.triangles) total += 0.5 * normal_of(map, t).norm() * density_of(owner, map, t, finer);
   }
   if (!(total > 0)) return;
   const double density = static_cast<double>(count) / total;
@@ -77,10 +80,11 @@ SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, const std::vector<in
   std::int64_t made = 0;
   for (const int owner : owners) {
     const PatchMap& map = *hierarchy.map(owner);
+    const std::vector<double> finer = finer_at(map);
     for (const auto& t : map.triangles) {
       const Vec3 n = normal_of(map, t);
       const double l = n.norm();
-      const double f = density_of(owner, map, t);
+      const double f = density_of(owner, map, t, finer);
       area += 0.5 * l * f;
       for (const std::int64_t target = static_cast<std::int64_t>(area * density); made < target; ++made) {
         // Roberts' R2 sequence, folded into the triangle.

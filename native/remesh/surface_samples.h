@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "remesh/fit.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 
@@ -12,10 +13,11 @@ namespace hybrid_mesh {
 // quad, however small it is.
 class SurfaceSamples {
  public:
-  // About `count` of them; leaves finer than level `finest` count as one of that level.
-  SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest);
+  // About `count` of them; leaves finer than level `finest` count as one of that level. `sizes`: of a level's quads, in the maps' space; none: they
+  // are even.
+  SurfaceSamples(const HybridMesh& hierarchy, std::int64_t count, int finest, const SizeField* sizes = nullptr);
   // Of these nodes' maps alone.
-  SurfaceSamples(const HybridMesh& hierarchy, const std::vector<int>& owners, std::int64_t count, int finest);
+  SurfaceSamples(const HybridMesh& hierarchy, const std::vector<int>& owners, std::int64_t count, int finest, const SizeField* sizes = nullptr);
   // As samples of a mesh taken from the hierarchy, each with a face of the node that it lies under.
   std::vector<FitSample> on(const HybridMesh& hierarchy, const QuadMesh& mesh) const;
   std::size_t size() const { return samples_.size(); }

@@ -139,6 +139,9 @@ std::vector<std::string> warnings(const Finished& f) {
   std::vector<std::string> list;
   const Candidate& c = f.candidate;
   if (f.distance.hausdorff > kManyWidths * f.width && !too_far(f.distance.hausdorff, f)) list.push_back(far_off(f));
+  if (const Density& density = f.task.source.density; density.outside > 0)
+    list.push_back(std::to_string(density.outside) + " values of the density '" + density.name +
+                   "' are not in 0 to 1, and count as the nearer of the two");
   std::string levels;
   for (std::size_t j = 0; j + 1 < c.level_reports.size(); ++j) {
     const nlohmann::ordered_json &level = c.level_reports[j], &closed = level["closed_surface"];

@@ -12,6 +12,7 @@
 #include "layout/base/closed_components.h"
 #include "parameterization/patched_surface.h"
 #include "surface/edit_mesh.h"
+#include "surface/size_field.h"
 #include "surface/well_shaped.h"
 
 namespace hybrid_mesh {
@@ -145,6 +146,8 @@ Weights weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
   return w;
 }
 
+double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
+
 }  // namespace
 
 std::int64_t working_faces(double base_quads, std::int64_t vertices) {
@@ -180,21 +183,26 @@ void WorkingSurface::to_repaired(PatchMap& map, const TriangleSurface& repaired)
 }
 
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
-                                    const std::vector<char>& held, const std::optional<FeatureOptions>& features, const WorkingSizes& sizes) {
+                                    const std::vector<char>& held, const std::optional<FeatureOptions>& features,
+                                    const std::shared_ptr<const SizeField>& quad_sizes, const WorkingSizes& sizes) {
   TriangleSurface placed = repaired;
   for (Vec3& p : placed.points) p = placement.to_unit(p);
-  const double triangle = surface_area(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
+  placed.sizes = quad_sizes;
+  const double triangle = measured_area(placed) / static_cast<double>(std::max<std::int64_t>(1, faces));
   const double edge = std::sqrt(4 / std::sqrt(3.0) * triangle);
   WellShapedOptions options;
   options.longest_edge = sizes.longest * edge;
-  options.shortest_edge = sizes.shortest * edge;
-  options.collapsible = sizes.collapsible * edge;
-  options.tolerance = std::min(sizes.tolerance * edge, sizes.most_tolerance);
+  // Where quads are to be smallest.
+  const double least = quad_sizes ? 1 / largest(quad_sizes->fineness(placed.points)) : 1.0;
+  options.shortest_edge = sizes.shortest * edge * least;
+  options.collapsible = sizes.collapsible * edge * least;
+  options.tolerance = std::min(sizes.tolerance * edge * least, sizes.most_tolerance);
   options.held = held;
   options.needles.area = sizes.needle_triangles * triangle;
   WellShaped shaped = make_well_shaped(placed, options, progress);
   WorkingSurface w;
   w.mesh = std::move(shaped.mesh);
+  w.mesh.sizes = quad_sizes;
   w.place = std::move(shaped.place);
   w.placement = placement;
   const bool has_boundary = std::find(placed.opposite.begin(), placed.opposite.end(), -1) != placed.opposite.end();

@@ -47,9 +47,10 @@ struct WorkingSizes {
 std::int64_t working_faces(double base_quads, std::int64_t vertices);
 
 // `faces`: see working_faces(). Where the repaired surface's are smaller, they stay. `held`: per face of it whether nothing may be mended there;
-// empty: of none. `features`: how its sharp edges are found; none: they are not kept.
+// empty: of none. `features`: how its sharp edges are found; none: they are not kept. `quad_sizes`: of the quads on it, in unit
+// size: its triangles have such sizes, too. None: both are even.
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
                                     const std::vector<char>& held = {}, const std::optional<FeatureOptions>& features = {},
-                                    const WorkingSizes& sizes = WorkingSizes());
+                                    const std::shared_ptr<const SizeField>& quad_sizes = {}, const WorkingSizes& sizes = WorkingSizes());
 
 }  // namespace hybrid_mesh

@@ -7,7 +7,7 @@
 
 namespace hybrid_mesh {
 
-// A number that tells surfaces apart: of their points' coordinates and their faces.
-std::string fingerprint(const TriangleSurface& surface);
+// A number that tells surfaces apart: of their points' coordinates and their faces, and of values at the points, if there are some.
+std::string fingerprint(const TriangleSurface& surface, const std::vector<double>& values = {});
 
 }  // namespace hybrid_mesh

@@ -11,7 +11,8 @@ namespace hybrid_mesh {
 
 // The readers of single formats. They report what is wrong with the bytes, and where; what holds for every format SoupBuilder checks. Memory stays
 // proportional to the bytes.
-PolygonSoup read_ply(std::string_view bytes, const std::string& name);
+// `density`: see read_polygon_soup().
+PolygonSoup read_ply(std::string_view bytes, const std::string& name, std::string_view density);
 PolygonSoup read_obj(std::string_view bytes, const std::string& name);
 PolygonSoup read_off(std::string_view bytes, const std::string& name);
 PolygonSoup read_stl(std::string_view bytes, const std::string& name);

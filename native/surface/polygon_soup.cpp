@@ -139,12 +139,15 @@ void write_atomically(const std::string& path, const std::string& bytes) {
 
 }  // namespace
 
-PolygonSoup read_polygon_soup(std::string_view bytes, MeshFormat format, const std::string& name) {
+PolygonSoup read_polygon_soup(std::string_view bytes, MeshFormat format, const std::string& name, const std::string& density) {
   if (bytes.empty()) throw Error(ErrorCode::InvalidInput, name + ": the file is empty");
+  if (!density.empty() && format != MeshFormat::Ply)
+    throw Error(ErrorCode::Unsupported,
+                name + ": has no property " + hybrid_mesh::quoted(density) + " for the density: of mesh files only .ply has properties of points");
   try {
     switch (format) {
       case MeshFormat::Ply:
-        return read_ply(bytes, name);
+        return read_ply(bytes, name, density);
       case MeshFormat::Obj:
         return read_obj(bytes, name);
       case MeshFormat::Off:
@@ -158,10 +161,10 @@ PolygonSoup read_polygon_soup(std::string_view bytes, MeshFormat format, const s
   throw Error(ErrorCode::Internal, "a format without a reader");
 }
 
-PolygonSoup read_polygon_soup(const std::string& path) {
+PolygonSoup read_polygon_soup(const std::string& path, const std::string& density) {
   const auto format = format_of(path);
   if (!format) throw Error(ErrorCode::Unsupported, path + ": not a .ply, .obj, .off or .stl file");
-  return read_polygon_soup(read_bytes(path), *format, path);
+  return read_polygon_soup(read_bytes(path), *format, path, density);
 }
 
 void write_polygon_soup(const PolygonSoup& soup, const std::string& path) {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "surface/mesh_formats.h"
@@ -51,13 +52,14 @@ std::optional<Scalar> scalar_named(std::string_view name) {
   return std::nullopt;
 }
 
-enum class Role { Skipped, X, Y, Z, Corners };
+enum class Role { Skipped, X, Y, Z, Corners, Density };
 
 struct Property {
   std::string_view name;
   Scalar type = Scalar::Int32;
   std::optional<Scalar> count_type;  // of a list
   Role role = Role::Skipped;
+  double weight = 1;  // with Role::Density, of which a point's values are summed up
 };
 
 struct Element {
@@ -73,6 +75,49 @@ struct Header {
   std::vector<Element> elements;
   std::string_view stray;  // a line that was skipped although it is no comment
 };
+
+// A colour's brightness, as Rec. 709 weighs its parts.
+constexpr std::array<std::pair<std::string_view, double>, 3> kColor{{{"red", 0.2126}, {"green", 0.7152}, {"blue", 0.0722}}};
+
+// Bytes and shorts are fractions of the largest, as colours are stored.
+double fraction_of(Scalar type) { return type == Scalar::UInt8 ? 1.0 / 255 : type == Scalar::UInt16 ? 1.0 / 65535 : 1.0; }
+
+Property* scalar_of(Element& element, std::string_view name) {
+  for (Property& property : element.properties)
+    if (!property.count_type && property.role == Role::Skipped && property.name == name) return &property;
+  return nullptr;
+}
+
+// The property of points that has the name; for "color", where there is none, all of red, green and blue.
+bool find_density(Element& element, std::string_view name) {
+  if (Property* one = scalar_of(element, name)) {
+    one->role = Role::Density;
+    one->weight = fraction_of(one->type);
+    return true;
+  }
+  if (name != "color") return false;
+  for (const auto& [part, weight] : kColor)
+    if (!scalar_of(element, part)) return false;
+  for (const auto& [part, weight] : kColor) {
+    Property* of = scalar_of(element, part);
+    of->role = Role::Density;
+    of->weight = weight * fraction_of(of->type);
+  }
+  return true;
+}
+
+void set_density(Header& header, std::string_view attribute, const std::string& name) {
+  if (attribute.empty()) return;
+  std::string known;
+  for (Element& element : header.elements) {
+    if (element.name != "vertex") continue;
+    if (find_density(element, attribute)) return;
+    for (const Property& property : element.properties)
+      if (!property.count_type && property.role == Role::Skipped) known += (known.empty() ? "" : ", ") + std::string(property.name);
+  }
+  throw Error(ErrorCode::InvalidInput, name + ": its vertices have no property " + quoted(attribute) + " for the density; " +
+                                           (known.empty() ? "they have none but their places" : "they have " + known));
+}
 
 bool speaks_of_vertices(std::string_view name) { return name.find("vert") != name.npos || name.find("Vert") != name.npos; }
 
@@ -337,7 +382,9 @@ class BodyReader {
     }
     // With a count that is too small, or a line of the header that was none, surface would be lost or garbage.
     if (!body_.only_padding_left()) refuse("the file goes on after all that its header promises");
-    return soup_.finish();
+    PolygonSoup soup = soup_.finish();
+    soup.density = std::move(density_);
+    return soup;
   }
 
  private:
@@ -360,6 +407,7 @@ class BodyReader {
 
   void read_one(const Element& element, std::uint64_t i) {
     Vec3 point;
+    double density = 0;
     for (const Property& property : element.properties) {
       if (property.count_type) {
         std::int64_t count = 0;
@@ -371,11 +419,18 @@ class BodyReader {
                           : element.name == "face"       ? read_polygon(property.type, count)
                                                          : read_strips(property.type, count);
         if (!read) fail(element, i, body_.complaint());
+      } else if (property.role == Role::Density) {
+        double value = 0;
+        if (!body_.read(property.type, value)) fail(element, i, body_.complaint());
+        density += property.weight * value;
+        has_density_ = true;
       } else if (!(property.role == Role::Skipped ? body_.skip(1, property.type) : body_.read(property.type, point[axis_of(property.role)]))) {
         fail(element, i, body_.complaint());
       }
     }
-    if (element.name == "vertex") soup_.add_point(point);
+    if (element.name != "vertex") return;
+    soup_.add_point(point);
+    if (has_density_) density_.push_back(density);
   }
 
   static int axis_of(Role role) { return static_cast<int>(role) - static_cast<int>(Role::X); }
@@ -416,15 +471,18 @@ class BodyReader {
   Body body_;
   const Header& header_;
   SoupBuilder soup_;
+  std::vector<double> density_;
+  bool has_density_ = false;
   const std::string& name_;
 };
 
 }  // namespace
 
-PolygonSoup read_ply(std::string_view bytes, const std::string& name) {
+PolygonSoup read_ply(std::string_view bytes, const std::string& name, std::string_view density) {
   const DecodedText text(bytes);
   HeaderReader reader(text.view(), name);
-  const Header header = reader.read();
+  Header header = reader.read();
+  set_density(header, density, name);
   if (header.encoding == Encoding::Ascii)
     return BodyReader<TextBody>(TextBody(text.view().substr(reader.position()), reader.lines()), header, name).read();
   const bool swap = (header.encoding == Encoding::BigEndian) != (std::endian::native == std::endian::big);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace hybrid_mesh {
@@ -17,13 +18,16 @@ struct SurfacePoint {
   std::array<double, 3> weights{0, 0, 0};
 };
 
+class SizeField;
+
 // An oriented 2-manifold triangle mesh (with boundary) and its half-edges: half-edge 3 f + i runs from corner i of face f
 // to corner (i + 1) % 3. Every point is used by a face; the faces around a point form one fan.
 struct TriangleSurface {
   std::vector<Vec3> points;
   std::vector<std::array<int, 3>> faces;
-  std::vector<int> opposite;     // #F * 3: the half-edge across, -1 at the boundary
-  std::vector<int> source_face;  // #F: triangle of the soup as it was read and triangulated, before repair
+  std::vector<int> opposite;               // #F * 3: the half-edge across, -1 at the boundary
+  std::vector<int> source_face;            // #F: triangle of the soup as it was read and triangulated, before repair
+  std::shared_ptr<const SizeField> sizes;  // that quads on it are to have, where they are not to be even; none: they are
 
   static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }

@@ -11,6 +11,7 @@
 #include <queue>
 
 #include "surface/guarded_mesh.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -22,6 +23,7 @@ class Shaping {
   Shaping(const TriangleSurface& input, const WellShapedOptions& options, const Progress& progress)
       : options_(options),
         progress_(progress),
+        sizes_(input.sizes.get()),
         mesh_(input, {options.tolerance, options.sharp_angle}),
         least_angle_(radians(options.least_angle)),
         stamp_(input.faces.size(), 0) {
@@ -117,9 +119,16 @@ class Shaping {
     }
   }
 
+  bool is_too_long(int h) const {
+    const double length = mesh_.length(h);
+    if (!sizes_) return length > options_.longest_edge;
+    const Vec3 middle = 0.5 * (mesh_.point(mesh_.mesh().from(h)) + mesh_.point(mesh_.mesh().to(h)));
+    return length * sizes_->fineness(middle) > options_.longest_edge;
+  }
+
   // --- refinement ----------------------------------------------------------------------------------------------------------------
   bool is_bad(int f) const {
-    if (mesh_.length(mesh_.longest(f)) > options_.longest_edge) return true;
+    if (is_too_long(mesh_.longest(f))) return true;
     if (!mesh_.is_released(f)) return false;
     const int corner = mesh_.smallest_corner(f);
     const double angle = mesh_.corner_angle(corner);
@@ -223,6 +232,7 @@ class Shaping {
 
   const WellShapedOptions& options_;
   const Progress& progress_;
+  const SizeField* sizes_;
   GuardedMesh mesh_;
   double least_angle_;
   std::vector<int> stamp_;    // per face: its changes

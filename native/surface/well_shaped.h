@@ -12,7 +12,7 @@ namespace hybrid_mesh {
 
 // Lengths are those of the surface, which is meant to be of unit size.
 struct WellShapedOptions {
-  double longest_edge = 0.01;   // longer edges are split
+  double longest_edge = 0.01;   // longer edges are split; with the surface's sizes, those of them in whose metric they are longer
   double shortest_edge = 5e-4;  // no edge is split into shorter ones: what is left of bad triangles where the shape asks for more
   double collapsible = 0.006;   // edges of bad triangles that are shorter than this may go
   double tolerance = 1e-5;      // distance that the surface may move; far below the error of what is made from it

@@ -9,6 +9,7 @@
 #include "layout/base/curve_network.h"
 #include "layout/base/decimation.h"
 #include "layout/base/quad_layout.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -78,6 +79,7 @@ class CoarseSurface {
   void compact() {
     const EditMesh& mesh = out_.collapsed;
     TriangleSurface& coarse = out_.coarse;
+    coarse.sizes = surface_.sizes;
     for (int v = 0; v < static_cast<int>(vertex_.size()); ++v)
       if (mesh.vertex_alive(v)) {
         vertex_[v] = static_cast<int>(coarse.points.size());
@@ -132,7 +134,8 @@ BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOption
   Decimated made{EditMesh(surface_), {}, {}};
   DecimationOptions decimation;
   decimation.target_faces = std::max({4, 5 * options.least, static_cast<int>(faces)});
-  decimation.curve_edge = std::sqrt(surface_area(surface_) / std::max(1.0, options.size));
+  decimation.fineness = fineness_at_points(surface_);
+  decimation.curve_edge = std::sqrt(measured_area(surface_) / std::max(1.0, options.size));
   decimation.seed = options.seed;
   decimation.features = &curves_;
   std::vector<VertexQuadric> quadrics = decimate(made.mesh, surface_.points, decimation, made.log, progress.part(0, 0.8));
@@ -142,6 +145,7 @@ BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOption
   layout_options.least = options.least;
   layout_options.seed = options.seed;
   layout_options.features = &curves_;
+  layout_options.fineness = decimation.fineness;
   made.layout = make_quad_layout(made.mesh, surface_.points, std::move(quadrics), layout_options, made.log, progress.part(0.8, 1));
   return made;
 }

@@ -17,8 +17,8 @@ struct Rims {
 
 class ClassSearch {
  public:
-  ClassSearch(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features)
-      : mesh_(mesh), points_(points), features_(features), piece_(mesh.alive.size(), -1), joined_(features.curve_count()) {}
+  ClassSearch(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features, const std::vector<double>& fineness)
+      : mesh_(mesh), points_(points), features_(features), fineness_(fineness), piece_(mesh.alive.size(), -1), joined_(features.curve_count()) {}
 
   CurveClasses run() {
     find_pieces();
@@ -42,11 +42,13 @@ class ClassSearch {
         const std::size_t before = on_rim.size();
         for (std::size_t i = 0; i < loop.size(); ++i) {
           const int curve = features_.curves()[mesh_.edge[loop[i]]];
+          const int a = mesh_.from(loop[i]), b = mesh_.to(loop[i]);
           const int sides = mesh_.opposite[loop[i]] < 0 ? 2 : 1;  // seen from both, if it has two
+          const double finer = fineness_.empty() ? 1.0 : 0.5 * (fineness_[a] + fineness_[b]);
           out.edges[curve] += sides;
-          out.length[curve] += 0.5 * sides * (points_[mesh_.to(loop[i])] - points_[mesh_.from(loop[i])]).norm();
+          out.length[curve] += 0.5 * sides * (points_[b] - points_[a]).norm() * finer;
           const int last = features_.curves()[mesh_.edge[loop[(i + loop.size() - 1) % loop.size()]]];
-          if (curve != last || features_.is_corner(mesh_.from(loop[i]))) on_rim.push_back(curve);
+          if (curve != last || features_.is_corner(a)) on_rim.push_back(curve);
         }
         if (on_rim.size() == before) on_rim.push_back(features_.curves()[mesh_.edge[loop[0]]]);  // closed, without corners
       }
@@ -141,6 +143,7 @@ class ClassSearch {
   const EditMesh& mesh_;
   const std::vector<Vec3>& points_;
   const MeshFeatures& features_;
+  const std::vector<double>& fineness_;
   std::vector<int> piece_;  // per face
   std::vector<Rims> rims_;
   DisjointSets joined_;  // curves
@@ -198,8 +201,8 @@ std::vector<int> CurveClasses::way_to_even(const std::vector<char>& odd, const s
   return {};
 }
 
-CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features) {
-  return ClassSearch(mesh, points, features).run();
+CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features, const std::vector<double>& fineness) {
+  return ClassSearch(mesh, points, features, fineness).run();
 }
 
 }  // namespace hybrid_mesh

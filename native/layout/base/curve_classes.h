@@ -27,6 +27,8 @@ struct CurveClasses {
   std::vector<int> way_to_even(const std::vector<char>& odd, const std::vector<char>& usable) const;
 };
 
-CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features);
+// `fineness`: see DecimationOptions.
+CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features,
+                           const std::vector<double>& fineness = {});
 
 }  // namespace hybrid_mesh

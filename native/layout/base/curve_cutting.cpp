@@ -18,6 +18,7 @@ PatchedSurface CurveNetwork::cut() {
     if (is_feature(static_cast<int>(c))) chains[c] = follow_feature(static_cast<int>(c), is_node);
   TriangleSurface& fine = out.mesh;
   fine.points = points_;
+  fine.sizes = surface_.sizes;
   for (std::size_t v = 0; v < points_.size(); ++v) out.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
   std::vector<int> point_of(crossings_.size(), -1);
   for (std::size_t c = 0; c < first_.size(); ++c)

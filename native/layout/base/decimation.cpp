@@ -135,13 +135,13 @@ class Decimation {
           }
     };
     std::vector<int> wanted;
-    CurveClasses classes = curve_classes(mesh_, points_, features());
+    CurveClasses classes = curve_classes(mesh_, points_, features(), options_.fineness);
     for (const std::vector<int>& curves : classes.curves) {
       wanted.push_back(std::numeric_limits<int>::max());
       for (const int c : curves) wanted.back() = std::min(wanted.back(), classes.edges[c]);
     }
     shorten_to(classes, wanted);
-    classes = curve_classes(mesh_, points_, features());
+    classes = curve_classes(mesh_, points_, features(), options_.fineness);
     wanted.clear();
     for (const std::vector<int>& curves : classes.curves) {
       wanted.push_back(classes.edges[curves[0]]);
@@ -260,7 +260,9 @@ class Decimation {
       longest = std::max({longest, (target - a).squaredNorm(), (target - b).squaredNorm()});
     });
     const VertexQuadric &mine = quadrics_[v], &other = quadrics_[star.spokes[spoke].end];
-    return (mine.planes(target) + other.planes(target)) / std::max(mine.area + other.area, 1e-300) + options_.evenness * longest;
+    const double cost = (mine.planes(target) + other.planes(target)) / std::max(mine.area + other.area, 1e-300) + options_.evenness * longest;
+    const double finer = options_.fineness.empty() ? 1.0 : 0.5 * (options_.fineness[v] + options_.fineness[star.spokes[spoke].end]);
+    return cost * finer * finer;
   }
 
   // How long the edge of a curve gets that loses a star's vertex along a spoke. Edges much longer than those beside them lie far off a bent curve,

@@ -26,6 +26,7 @@ struct DecimationOptions {
                             // is simplified with the rest
   const MeshFeatures* features = nullptr;  // curves that stay; the faces between them stay even in number where they can be paired
   double curve_edge = 0;                   // how long the edges of curves are to be
+  std::vector<double> fineness;            // per vertex, by how much lengths count more there; empty: the same everywhere
 };
 
 // Collapses and flips `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are

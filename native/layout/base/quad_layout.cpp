@@ -39,7 +39,7 @@ class QuadCoarsening : private QuadPairs {
     list_live();
     pair_within_features();
     double area = 0;
-    for (const int v : vertices_) area += quadrics_[v].area;
+    for (const int v : vertices_) area += quadrics_[v].area * finer(v) * finer(v);
     side_ = std::sqrt(area / std::max(1.0, options_.size));
     clean();
     int rounds = 0;
@@ -226,6 +226,8 @@ class QuadCoarsening : private QuadPairs {
     for (const int w : std::vector<int>(ring_)) forget(w);
   }
 
+  double finer(int v) const { return options_.fineness.empty() ? 1.0 : options_.fineness[v]; }
+
   Known& known(int f) { return known_[slot_[f]]; }
   template <class Visit>
   void for_faces_at(int v, const Visit& visit) const {
@@ -360,7 +362,7 @@ class QuadCoarsening : private QuadPairs {
     for (const int v : {x, y}) lacking += features_.is_on_curve(v) && lacks_quads(half_at(face, v), 1);
     const auto change = [&](int v, int by) { return sector_energy(half_at(face, v), by) - sector_energy(half_at(face, v), 0); };
     const double valence = change(to, added) + change(x, -1) + change(y, -1) - valence_energy(excess(from));
-    const double scale = side_ * side_;
+    const double side = side_ / (0.5 * (finer(from) + finer(to))), scale = side * side;
     return error / scale + 0.02 * longest / scale + 0.05 * std::max(0.0, total) + 0.03 * std::max(0.0, worst - 2) + 0.03 * valence +
            kLacking * lacking;
   }

@@ -36,6 +36,7 @@ struct QuadLayoutOptions {
   std::uint64_t seed = 1;
   std::vector<int> boundary_quads;  // per vertex on the boundary: how many quads are to meet there; the boundary stays as it is. Empty: two, and
                                     // nodes may be added between
+  std::vector<double> fineness;     // as in DecimationOptions
   const MeshFeatures* features = nullptr;  // curves that stay as they are: quads lie between them
 };
 

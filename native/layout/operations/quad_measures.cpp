@@ -31,11 +31,11 @@ std::vector<double> of_quads(const LevelState& state, const Value& value) {
 
 std::vector<double> quad_energies(const LevelState& state) {
   const double scale = std::sqrt(static_cast<double>(state.quads.patch_count()) / state.area), theta = GlobalMapOptions().theta;
-  return of_quads(state, [&](const PatchMap& map) { return map_energy(map, scale, theta); });
+  return of_quads(state, [&](const PatchMap& map) { return map_energy(map, scale, theta, state.sizes.get()); });
 }
 
 std::vector<double> quad_areas(const LevelState& state) {
-  return of_quads(state, [](const PatchMap& map) { return map_area(map); });
+  return of_quads(state, [&](const PatchMap& map) { return map_area(map, state.sizes.get()); });
 }
 
 double largest_area_ratio(const LevelState& state) {

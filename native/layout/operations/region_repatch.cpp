@@ -244,6 +244,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   for (PatchMap& map : maps)
     for (Vec3& p : map.positions) p = state.placement.to_unit(p);
   GluedMaps glued = glue_patch_maps(maps, part_of(level, quads));
+  glued.mapped.surface.mesh.sizes = state.sizes;
   MappedSurface part = glued.mapped;
   progress(0.2);
 
@@ -257,6 +258,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   RegionSurface surface = uncut_region(surface_of(part.surface, local.in_part), glued);
   glued.trace_on(roots.source_face, roots.source);
   open_events(state, repatch.opens, local, surface, glued);
+  surface.mesh.sizes = state.sizes;
 
   MappedEdit out;
   out.opens = repatch.opens;

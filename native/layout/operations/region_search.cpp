@@ -27,7 +27,8 @@ GlobalMapOptions trial_map_options() {
 }
 
 int tower_height_of(const LevelState& state, const PatchRegion& region) {
-  const GluedMaps glued = glue_patch_maps(maps_of(state, region.patches), part_of(state.quads, region.patches));
+  GluedMaps glued = glue_patch_maps(maps_of(state, region.patches), part_of(state.quads, region.patches));
+  glued.mapped.surface.mesh.sizes = state.sizes;
   std::vector<int> all(region.patches.size());
   std::iota(all.begin(), all.end(), 0);
   const std::optional<PatchRegion> local = make_disk(glued.mapped.surface, all);

@@ -13,6 +13,7 @@
 #include "layout/base/quad_layout.h"
 #include "layout/regions/disk_drawing.h"
 #include "layout/regions/region_pattern.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 
@@ -67,6 +68,7 @@ class Relayout {
     out.node_count = whole.node_count;
     LayoutChange change = change_layout(out, edit_);
     TriangleSurface& mesh = out.mesh;
+    mesh.sizes = whole.mesh.sizes;
     mesh.points = std::move(whole.mesh.points);
     out.source = std::move(whole.source);
     std::vector<int> point(piece_.mesh.points.size());
@@ -168,6 +170,7 @@ std::optional<DrawnEdit> decimated_edit(const QuadGraph& graph, const PatchRegio
   }
   // With more triangles than the quads need, pairs are found more easily beside a boundary that must stay.
   decimation.target_faces = std::max(n - 2, static_cast<int>(slack * quads));
+  decimation.fineness = options.fineness = fineness_at_points(disk);
   EditMesh mesh(disk);
   std::vector<MeshEdit> log;
   std::vector<VertexQuadric> quadrics = decimate(mesh, disk.points, decimation, log, progress);

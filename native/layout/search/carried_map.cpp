@@ -30,7 +30,9 @@ CarriedMap::CarriedMap(const TriangleSurface& surface, CutSurface cut)
       collapsed_(std::move(cut.collapsed)),
       log_(std::move(cut.log)),
       sharp_(std::move(cut.sharp)),
-      faces_(faces_of(collapsed_)) {}
+      faces_(faces_of(collapsed_)) {
+  layout.mesh.sizes = surface.sizes;
+}
 
 void CarriedMap::replace(PatchedSurface cut_layout, ChartMesh cut_charts) {
   layout = std::move(cut_layout);
@@ -42,7 +44,7 @@ void CarriedMap::uncut(const GlobalMapOptions& options, const Progress& progress
   if (log_.empty() || !is_cut_) return;
   ChartMesh coarse = charts;
   const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress);
-  charts = ChartMesh(coarse, collapsed_, surface_->points, surface_area(*surface_), vertex_of, sharp_);
+  charts = ChartMesh(coarse, collapsed_, *surface_, vertex_of, sharp_);
   is_cut_ = false;
   layout.mesh = *surface_;
   layout.patch.clear();
@@ -61,7 +63,9 @@ void CarriedMap::carry(const GlobalMapOptions& options, const Progress& progress
 
 MappedSurface CarriedMap::cut(const Progress& progress) const {
   ChartMesh rounded = charts;
-  return glue_patch_maps(extract_patch_maps(rounded, layout, faces_, progress), layout, faces_);
+  MappedSurface mapped = glue_patch_maps(extract_patch_maps(rounded, layout, faces_, progress), layout, faces_);
+  mapped.surface.mesh.sizes = surface_->sizes;
+  return mapped;
 }
 
 }  // namespace hybrid_mesh
