@@ -93,7 +93,7 @@ class Batch:
         folder = os.path.join(self._staging, f"objects{number}")
         try:
             os.mkdir(folder)
-            job = {"kind": "extract", "path": path, "folder": folder}
+            job = {"kind": "extract", "path": path, "folder": folder, "density": self.options.settings.density}
             found = self.processes.run(job, self.options.timeout, needs_bpy=True)["objects"]
         except (WorkerFailed, OSError) as error:
             return [input_files.failed_input(path, explain(error, path))]

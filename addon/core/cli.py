@@ -89,6 +89,7 @@ def _settings(arguments):
         semi_regular=arguments.semi_regular,
         features=arguments.features,
         drop_components=arguments.drop_components,
+        density=arguments.density or "",
         strict=arguments.strict,
         plan=_read_plan(arguments.plan) if arguments.plan else "",
         seed=arguments.seed,
@@ -192,6 +193,12 @@ def _parser():
         "--features", type=_features, default="auto", metavar="auto|DEG|none",
         help="sharp edges that are kept: auto, where flat or smooth faces meet at them (default); all from an angle in degrees on; or none",
     )
+    shape.add_argument(
+        "--density", type=_name, metavar="NAME",
+        help="a property of a .ply's vertices ('color': the brightness of red, green and blue), or in Blender a vertex group, or an attribute of points, corners or faces, that "
+        "says how small quads are: edges are 4^(1 - 2 v) times as long where its value is v, a quarter at 1, as without at 0.5, four times at 0; as many vertices "
+        "in all; adaptive: errors count more where it is high",
+    )  # fmt: skip
     shape.add_argument("--stretch", type=float, default=4.0, metavar="X", help="grow skin where the map is stretched more than this (default 4)")
     shape.add_argument("--plan", metavar="FILE.json", help="take base quads and irregular operations from a plan, as NAME.plan.json of another remesh")
     shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
@@ -252,6 +259,12 @@ def _positive(text):
     if not 0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"must be a number above 0, not {text!r}")
     return value
+
+
+def _name(text):
+    if not text:
+        raise argparse.ArgumentTypeError("must be the name of an attribute")
+    return text
 
 
 def _features(text):

@@ -108,6 +108,9 @@ def repatched(report, operation, outcome, most_vertices=0):
     finest = outcome["levels"][max(outcome["levels"])]
     final.update(finest)
     made.update(verdict=None, warnings=[])
+    if made.get("density"):
+        made["density"]["met"] = None
+        made["warnings"].append(f"the density {made['density']['name']!r} does not apply to the new quads, which are even; a remesh with the plan makes them follow it")
     before, after = outcome["energy_before"], outcome["energy_after"]
     if not after < before:
         made["warnings"].append(f"the new quads are no better than those that they replace: their distortion, with the rings around, was {before:.3g} and is {after:.3g}")

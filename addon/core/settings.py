@@ -29,6 +29,7 @@ OPTION_NAMES = {
     "semi_regular": "--semi-regular",
     "features": "--features",
     "drop_components": "--drop-components",
+    "density": "--density",
     "strict": "--strict",
     "plan": "--plan",
     "seed": "--seed",
@@ -55,6 +56,7 @@ class RemeshSettings:
     semi_regular: bool = False  # no irregular operations
     features: object = "auto"  # sharp edges: "auto" where flat or smooth faces meet at them, "none", or the angle in degrees from which they are kept
     drop_components: float = 0.0  # components below this fraction of the area are removed
+    density: str = ""  # name of the attribute by whose values, in 0..1, quads are smaller or larger; empty: none
     strict: bool = False  # refuse input that needs repair; a poor result is an error
     plan: str = ""  # JSON text of a plan (see core/plans.py) that decides base and irregular operations; empty: they are searched for
     seed: int = 1
@@ -82,6 +84,8 @@ class RemeshSettings:
             least, most = bounds.least_feature_angle, bounds.most_feature_angle
             _number("features", self.features, lambda value: least <= value <= most, f"auto, none or an angle from {least:g} to {most:g} degrees")
         _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")
+        if not isinstance(self.density, str):
+            raise SettingsError(f"--density must be the name of an attribute, not {self.density!r}")
         if not isinstance(self.plan, str):
             raise SettingsError("--plan must be a plan's text")
         _whole("seed", self.seed, 0, bounds.most_seed)
@@ -96,6 +100,8 @@ class RemeshSettings:
         """What the report states: everything that can change the result but the plan, which has a file of its own."""
         values = asdict(self)
         del values["threads"], values["plan"]
+        if not self.density:
+            del values["density"]
         return values
 
     def identity(self):

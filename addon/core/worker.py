@@ -37,14 +37,18 @@ def remesh(job):
     """Remeshes one input into the staging folder: every output complete, or an error."""
     began = time.monotonic()
     module = native()
+    settings = settings_module.from_mapping(job["settings"])
+    density = None
     if job.get("arrays"):
-        mesh = _load_arrays(job["arrays"])
+        *mesh, density = _load_arrays(job["arrays"])
     else:
         refuse_unreadable(job["path"])
-        mesh = module.read_mesh(job["path"])
+        if settings.density:
+            *mesh, density = module.read_mesh(job["path"], settings.density)
+        else:
+            mesh = module.read_mesh(job["path"])
     read = time.monotonic()
-    settings = settings_module.from_mapping(job["settings"])
-    result = module.remesh(*mesh, settings.native())
+    result = module.remesh(*mesh, settings.native(), density)
     worked = time.monotonic()
 
     stem = os.path.join(job["folder"], job["name"])
@@ -140,7 +144,7 @@ def _load_arrays(path):
     import numpy
 
     with numpy.load(path) as arrays:
-        return arrays["points"], arrays["offsets"], arrays["indices"]
+        return arrays["points"], arrays["offsets"], arrays["indices"], arrays["density"] if "density" in arrays else None
 
 
 def _first_line():

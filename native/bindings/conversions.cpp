@@ -78,6 +78,15 @@ PolygonSoup soup_from_arrays(const py::object& points_object, const py::object& 
   return soup;
 }
 
+PolygonSoup soup_from_arrays(const py::object& points, const py::object& offsets, const py::object& indices, const py::object& density) {
+  PolygonSoup soup = soup_from_arrays(points, offsets, indices);
+  if (density.is_none()) return soup;
+  const auto values = numbers<double>(density, "density", "fiu", "numbers");
+  if (values.ndim() != 1) refuse("density must have one dimension, not the shape " + shape_of(values));
+  soup.density.assign(values.data(), values.data() + values.size());
+  return soup;
+}
+
 PolygonSoup soup_from_faces(const py::object& points, const py::object& faces) {
   const auto array = py::array::ensure(faces);
   if (!array || array.ndim() != 2 || array.shape(1) < 3) {

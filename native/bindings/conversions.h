@@ -19,6 +19,10 @@ namespace hybrid_mesh {
 // of its type, shape or values cannot be used.
 PolygonSoup soup_from_arrays(const pybind11::object& points, const pybind11::object& offsets, const pybind11::object& indices);
 
+// The same with the values of an attribute that is the density of quads, one a point; none where it is None.
+PolygonSoup soup_from_arrays(const pybind11::object& points, const pybind11::object& offsets, const pybind11::object& indices,
+                             const pybind11::object& density);
+
 // The same with faces of as many corners each, (m, corners) indices.
 PolygonSoup soup_from_faces(const pybind11::object& points, const pybind11::object& faces);
 

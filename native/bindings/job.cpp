@@ -46,9 +46,10 @@ LiveJobs& live_jobs() {
   return jobs;
 }
 
-std::shared_ptr<PythonJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
+std::shared_ptr<PythonJob> start_remesh(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings,
+                                        const py::object& density) {
   auto result = std::make_shared<RemeshResult>();  // written by the job's thread until it is done
-  return start_job([input = soup_from_arrays(points, offsets, indices), options = remesh_options_from_dict(settings),
+  return start_job([input = soup_from_arrays(points, offsets, indices, density), options = remesh_options_from_dict(settings),
                     result](Context& context) { *result = remesh(input, options, context); },
                    [result, made = std::optional<PythonResult>()]() mutable {
                      if (!made) made.emplace(result);
@@ -112,7 +113,7 @@ void bind_job(py::module_& module) {
       .def("wait", &wait, arg("timeout_s") = py::none(), "Waits until it has ended or the time is over; returns `done`.")
       .def("result", &PythonJob::result, "Waits, then returns what start_... says, or raises what went wrong.");
   module.def("start_remesh", &start_remesh, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
-             "Starts a remesh and returns its Job at once; the job's result is a Result.");
+             arg("density") = py::none(), "Starts a remesh and returns its Job at once; the job's result is a Result.");
   module.def(
       "shutdown_jobs", [] { live_jobs().stop_all(); }, "Cancels every job that is still running and waits for its thread.");
   py::module_::import("atexit").attr("register")(module.attr("shutdown_jobs"));

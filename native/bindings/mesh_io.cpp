@@ -12,9 +12,10 @@ namespace py = pybind11;
 namespace hybrid_mesh {
 namespace {
 
-py::tuple read_mesh(const py::object& path_object) {
+py::tuple read_mesh(const py::object& path_object, const std::string& density) {
   const std::string path = path_from_python(path_object);
-  return soup_to_arrays(without_gil([&] { return read_polygon_soup(path); }));
+  const PolygonSoup soup = without_gil([&] { return read_polygon_soup(path, density); });
+  return density.empty() ? soup_to_arrays(soup) : py::tuple(soup_to_arrays(soup) + py::make_tuple(to_array(soup.density)));
 }
 
 void write_mesh(const py::object& path_object, const py::object& points, const py::object& offsets, const py::object& indices) {
@@ -84,7 +85,10 @@ py::dict compare(const py::object& points_a, const py::object& offsets_a, const 
 
 void bind_mesh_io(py::module_& module) {
   using py::arg;
-  module.def("read_mesh", &read_mesh, arg("path"), "Reads .ply, .obj, .off or .stl: (points, face_offsets, face_indices).");
+  module.def("read_mesh", &read_mesh, arg("path"), arg("density") = "",
+             "Reads .ply, .obj, .off or .stl: (points, face_offsets, face_indices). density: name of a property of a .ply's vertices, whose values "
+             "are returned "
+             "as well, as a fourth; 'color' is the brightness of red, green and blue.");
   module.def("write_mesh", &write_mesh, arg("path"), arg("points"), arg("face_offsets"), arg("face_indices"),
              "Writes .ply or .obj; the file appears when it is complete.");
   module.def("topology", &topology, arg("points"), arg("face_offsets"), arg("face_indices"), "Counts of a mesh, as a dict.");

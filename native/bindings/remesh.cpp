@@ -143,6 +143,8 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
     options.semi_regular = setting.flag();
   } else if (key == "drop_components") {
     options.drop_components = setting.number_below(limits::end_of_drop_components);
+  } else if (key == "density") {
+    options.density = setting.text();
   } else if (key == "plan") {
     options.plan = setting.text();
   } else if (key == "strict") {
@@ -156,9 +158,10 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
   }
 }
 
-PythonResult remesh_and_wait(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings) {
+PythonResult remesh_and_wait(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings,
+                             const py::object& density) {
   const RemeshOptions options = remesh_options_from_dict(settings);
-  const PolygonSoup soup = soup_from_arrays(points, offsets, indices);
+  const PolygonSoup soup = soup_from_arrays(points, offsets, indices, density);
   return PythonResult(run_interruptibly([&](Context& context) { return std::make_shared<RemeshResult>(remesh(soup, options, context)); }));
 }
 
@@ -204,7 +207,10 @@ void bind_remesh(py::module_& module) {
           "For each face of the repaired surface the triangle of the input, as it was triangulated.")
       .def("save", &save, arg("path"), arg("metadata") = "", "Writes the hierarchy with its maps.");
   module.def("remesh", &remesh_and_wait, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
-             "Remeshes and returns the Result; Ctrl-C ends it.");
+             arg("density") = py::none(),
+             "Remeshes and returns the Result; Ctrl-C ends it. density: one value in [0, 1] a point, of the attribute that the setting `density` "
+             "names: 1 for "
+             "edges 1/4 as long as at 0.5, 0 for edges 4 times as long.");
 }
 
 }  // namespace hybrid_mesh

@@ -57,11 +57,11 @@ def limits():
 
 SETTINGS = {
     "vertices", "error", "levels", "refinement", "faces", "base", "topology", "components", "remove_noise", "stretch_threshold", "semi_regular", "features",
-    "drop_components", "strict", "seed", "threads", "plan",
+    "drop_components", "strict", "seed", "threads", "plan", "density",
 }  # fmt: skip
 
 
-def read_mesh(path):
+def read_mesh(path, density=""):
     name = os.path.basename(os.fsdecode(path))
     if "crash" in name:
         os.abort()
@@ -79,7 +79,8 @@ def read_mesh(path):
                 indices += [int(word) - 1 for word in words[1:]]
                 offsets.append(len(indices))
     size = 100 if "poor" in name else 1
-    return size * numpy.array(points, dtype=float).reshape(-1, 3), numpy.array(offsets, dtype=numpy.int64), numpy.array(indices, dtype=numpy.int32)
+    mesh = size * numpy.array(points, dtype=float).reshape(-1, 3), numpy.array(offsets, dtype=numpy.int64), numpy.array(indices, dtype=numpy.int32)
+    return (*mesh, numpy.full(len(points), 0.5)) if density else mesh
 
 
 def write_mesh(path, points, offsets, indices):
@@ -210,10 +211,12 @@ class Result:
         return self._mesh
 
 
-def remesh(points, offsets, indices, settings):
+def remesh(points, offsets, indices, settings, density=None):
     for name in settings:
         if name not in SETTINGS:
             raise InvalidInput(f"unknown setting {name}")
+    if settings.get("density") and (density is None or len(density) != len(points)):
+        raise InvalidInput(f"the density {settings['density']!r} has not one value a point")
     if settings["vertices"] and settings["vertices"] < 8:
         raise InvalidInput("the surface cannot be represented with fewer than 8 vertices")
     return Result((points, offsets, indices), settings)
@@ -257,7 +260,7 @@ class Job:
 _jobs = []
 
 
-def start_remesh(points, offsets, indices, settings):
+def start_remesh(points, offsets, indices, settings, density=None):
     _jobs.append(Job((points, offsets, indices), settings))
     return _jobs[-1]
 

@@ -50,6 +50,15 @@ def test_every_level_is_exported(command_line):
     assert command_line.outputs() == sorted(["box.hmesh", "box.plan.json", "box.report.json", "summary.csv", *levels])
 
 
+def test_density_is_a_name(command_line):
+    assert command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--density", "dense").returncode == 0
+    assert report(command_line, "box")["settings"]["density"] == "dense"
+    run = command_line.run("remesh", "box.obj", "--output", "out", "--density", "")
+    assert run.returncode == 2 and "--density" in run.err
+    text = " ".join(command_line.run("remesh", "--help").out.split())
+    assert "--density NAME" in text and "4^(1 - 2 v)" in text
+
+
 @pytest.mark.parametrize("option, values", [("topology", ("auto", "late", "base")), ("components", ("apart", "joined"))])
 def test_topology_is_a_setting(command_line, option, values):
     for value in values:

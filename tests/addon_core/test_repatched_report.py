@@ -34,3 +34,10 @@ def test_a_region_that_is_no_better_and_a_bound_that_is_passed_are_said():
     assert "no better" in repatched(before=1.0, after=1.0)["warnings"][0]
     assert repatched(bound=114)["warnings"] == []
     assert "more than the bound of 113" in repatched(bound=113)["warnings"][0]
+
+
+def test_new_quads_that_do_not_follow_a_density_are_said():
+    report = {**copy.deepcopy(REPORT), "density": {"name": "dense", "smallest": 0.5, "largest": 2, "met": 0.1}}
+    made = reports.repatched(report, OPERATION, {"energy_before": 2.0, "energy_after": 1.0, "levels": COUNTS})
+    assert made["density"] == {"name": "dense", "smallest": 0.5, "largest": 2, "met": None} and report["density"]["met"] == 0.1
+    assert len(made["warnings"]) == 1 and "'dense'" in made["warnings"][0]

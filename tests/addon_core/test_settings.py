@@ -27,7 +27,7 @@ def test_defaults_and_presets_are_valid():
         ("base", 1.5), ("stretch_threshold", limits().least_stretch_threshold - 0.25), ("stretch_threshold", 2 * limits().most_stretch_threshold),
         ("stretch_threshold", float("nan")), ("drop_components", limits().end_of_drop_components), ("drop_components", -0.1), ("seed", -1),
         ("features", "some"), ("features", ""), ("features", None), ("features", True), ("features", float("nan")), ("features", -40),
-        ("features", limits().least_feature_angle - 0.25), ("features", limits().most_feature_angle + 0.25), ("threads", -1), *((name, most + 1) for name, most in LARGEST.items()),
+        ("features", limits().least_feature_angle - 0.25), ("features", limits().most_feature_angle + 0.25), ("threads", -1), ("density", None), ("density", 1), *((name, most + 1) for name, most in LARGEST.items()),
     ],
 )  # fmt: skip
 def test_what_is_out_of_bounds_is_named(name, value):
@@ -61,6 +61,12 @@ def test_presets_leave_sharp_edges_to_the_surface():
 
 def test_every_setting_has_an_option_name():
     assert set(settings.OPTION_NAMES) == {field.name for field in dataclasses.fields(RemeshSettings)}
+
+
+def test_a_density_is_told_where_there_is_one():
+    assert "density" not in RemeshSettings().reported() and "density" not in RemeshSettings().identity()
+    assert RemeshSettings(density="dense").reported()["density"] == "dense"
+    assert RemeshSettings(density="dense").identity() != RemeshSettings(density="other").identity()
 
 
 def test_unknown_settings_are_refused():
