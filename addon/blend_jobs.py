@@ -12,7 +12,7 @@ from .features.levels import properties
 def extract(job):
     """Every mesh object of a scene's file as arrays in a folder."""
     worker.refuse_unreadable(job["path"])
-    return {"objects": blend_files.extract(job["path"], job["folder"])}
+    return {"objects": blend_files.extract(job["path"], job["folder"], job.get("density", ""))}
 
 
 def write_blend(job):

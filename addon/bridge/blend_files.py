@@ -10,6 +10,7 @@ import numpy
 
 from .. import compat
 from ..core.native import native
+from . import density as densities
 from . import levels, meshes
 from .arrays import MatrixError
 
@@ -21,8 +22,10 @@ IMPORTERS = {
 }
 
 
-def extract(path, folder):
+def extract(path, folder, density=""):
     """Saves every mesh object of a scene's file as arrays (evaluated, world space); returns [{name, arrays} or {name, error}], sorted by name.
+
+    density: name of the vertex group or attribute that is saved with them as the density of quads; empty: none. An object without it has an error.
 
     Raises ValueError where the file cannot be opened or imported.
     """
@@ -44,13 +47,14 @@ def extract(path, folder):
         entry = {"name": obj.name}
         found.append(entry)
         try:
-            points, offsets, indices = meshes.read_source(obj, graph).mesh
+            source = meshes.read_source(obj, graph, density=densities.reader(density))
         except (meshes.SourceError, MatrixError) as error:
             entry["error"] = str(error)
             continue
         entry["arrays"] = os.path.join(folder, f"{len(found)}.npz")
         with open(entry["arrays"], "wb") as file:
-            numpy.savez(file, points=points, offsets=offsets, indices=indices)
+            points, offsets, indices = source.mesh
+            numpy.savez(file, points=points, offsets=offsets, indices=indices, **({} if source.density is None else {"density": source.density}))
     return found
 
 

@@ -32,13 +32,15 @@ class Source:
     triangle_polygons: numpy.ndarray  # the polygon of each triangle
     triangle_loops: numpy.ndarray  # (n, 3) the corners of each triangle, in its order in `mesh`
     carried: Any  # transfer.Carried: what the surface carries
+    density: Any = None  # (points,) what is to make quads smaller or larger, if that is wanted
 
 
-def read_source(obj, depsgraph, collect=None):
+def read_source(obj, depsgraph, collect=None, density=None):
     """The evaluated mesh of a mesh object (modifiers applied) in world space, faces counter-clockwise seen from outside there.
 
     N-gons are cut as Blender shows them, so that source triangle t of a result is triangle t of the Source.
-    collect(obj, mesh) reads what the surface carries, if that is wanted. Raises SourceError or MatrixError.
+    collect(obj, mesh) reads what the surface carries, and density(obj, mesh) a value a vertex by which quads are made smaller or larger, if that is wanted.
+    Raises SourceError or MatrixError.
     """
     matrix = world_matrix(obj.matrix_world)
     evaluated = obj.evaluated_get(depsgraph)
@@ -54,6 +56,7 @@ def read_source(obj, depsgraph, collect=None):
         loops = values_of(mesh.loop_triangles, "loops", 3, numpy.int32)
         polygons = values_of(mesh.loop_triangles, "polygon_index", 1, numpy.int32)
         carried = collect(obj, mesh) if collect else None
+        densities = density(obj, mesh) if density else None
     finally:
         evaluated.to_mesh_clear()
     if mirrors(matrix):
@@ -63,7 +66,7 @@ def read_source(obj, depsgraph, collect=None):
     if not numpy.isfinite(points).all():
         raise SourceError("it has vertices at places that are not finite")
     offsets = numpy.arange(0, 3 * len(loops) + 1, 3, dtype=numpy.int64)
-    return Source(key_of(obj), MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, carried)
+    return Source(key_of(obj), MeshArrays(points, offsets, corners[loops.ravel()]), matrix, polygons, loops, carried, densities)
 
 
 def new_mesh(name, made, matrix):

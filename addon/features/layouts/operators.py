@@ -6,7 +6,7 @@ import mathutils
 from bpy.props import IntProperty
 
 from ... import compat
-from ...bridge import arrays, meshes, objects, strokes, transfer, view
+from ...bridge import arrays, density, meshes, objects, strokes, transfer, view
 from ...core import plans
 from ...core.native import native
 from ...core.tasks import Chain, Task
@@ -126,7 +126,7 @@ class HYBRID_MESH_OT_remesh_layout(_OnLayout, RemeshJobOperator):
 
     def prepare(self, context):
         settings = core_settings(context.scene.hybrid_mesh)
-        source, drawn = _read(context, transfer.collect)
+        source, drawn = _read(context, transfer.collect, density.reader(settings.density))
         self._drawn = drawn
 
         def remesh(result):
@@ -198,12 +198,12 @@ class HYBRID_MESH_OT_remesh_boundary(_OnSurface, RemeshJobOperator):
         return context.scene.hybrid_mesh.hide_source
 
 
-def _read(context, collect=None):
-    """The meshes.Source and the drawing.Drawn of the mesh object that the active object stands for; raises ValueError. collect: as in meshes.read_source()."""
+def _read(context, collect=None, densities=None):
+    """The meshes.Source and the drawing.Drawn of the mesh object that the active object stands for; raises ValueError. collect, densities: as in meshes.read_source()."""
     surface = properties.surface_of(objects.active(context), context.scene)
     try:
         with objects.evaluated(context, surface) as graph:
-            return meshes.read_source(surface, graph, collect), drawing.read_drawn(context, surface)
+            return meshes.read_source(surface, graph, collect, densities), drawing.read_drawn(context, surface)
     except ValueError as error:
         raise ValueError(f"{surface.name}: {error}") from error
 

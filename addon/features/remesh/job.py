@@ -5,7 +5,7 @@ import json
 
 import bpy
 
-from ...bridge import arrays, levels, meshes, objects, placement, transfer
+from ...bridge import arrays, density, levels, meshes, objects, placement, transfer
 from ...core import loops
 from ...core import report as reports
 from ...core.native import native
@@ -20,7 +20,7 @@ from ..topology import properties as topology_properties
 def remesh_task(obj, depsgraph, settings, plan=""):
     """A task that remeshes an object with RemeshSettings, by a plan if there is one, else with the object's loops. An object that cannot be read is a task that fails."""
     try:
-        source = meshes.read_source(obj, depsgraph, transfer.collect)
+        source = meshes.read_source(obj, depsgraph, transfer.collect, density.reader(settings.density))
         plan = plan or topology_properties.plan_of(obj, source)
     except (meshes.SourceError, arrays.MatrixError, loops.LoopError) as error:
         return Task(obj.name, _refusal(error))
@@ -32,7 +32,7 @@ def source_task(name, source, settings, plan=""):
     module, values = native(), settings.native()
     if plan:
         values["plan"] = plan
-    return Task(name, lambda: module.start_remesh(*source.mesh, values), (source, settings))
+    return Task(name, lambda: module.start_remesh(*source.mesh, values, source.density), (source, settings))
 
 
 class RemeshJobOperator(NativeJobOperator):

@@ -5,8 +5,9 @@ import math
 
 import bpy
 import numpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ...bridge import density
 from ...core import settings as core
 from ...core.limits import limits
 
@@ -58,12 +59,22 @@ def _degrees(radians):
     return round(math.degrees(radians), 4)
 
 
+def _density_names(properties, context, text):
+    obj = context.object
+    return [name for name in density.names_of(obj) if text.lower() in name.lower()] if obj is not None and obj.type == "MESH" else []
+
+
 class RemeshProperties:
     """Mix-in for whatever has the settings of a remesh as properties."""
 
     vertices: IntProperty(
         name="Vertices", description="Hard upper bound on the final mesh's vertices; 0 takes as many as the source has", default=20000, min=0,
         max=_whole(limits().most_vertices), soft_max=1_000_000,
+    )  # fmt: skip
+    density: StringProperty(
+        name="Density", description="A vertex group, or a number or colour of points, corners or faces, that makes quads smaller where it is high: edges are a quarter as long where it is 1, "
+        "as without where it is 0.5 or a vertex is not in the group, four times as long where it is 0, with as many vertices in all. Adaptive: errors count more where it is high",
+        search=_density_names, search_options={"SUGGESTION"},
     )  # fmt: skip
     error: FloatProperty(
         name="Error", description="Stop at this L2 distance, as a fraction of the bounding-box diagonal; 0 for no bound", default=0, min=0,
@@ -134,6 +145,7 @@ def core_settings(properties):
         stretch_threshold=properties.stretch,
         semi_regular=properties.semi_regular,
         drop_components=properties.drop_components,
+        density=properties.density,
         strict=properties.strict,
         seed=properties.seed,
         threads=properties.threads,
@@ -160,6 +172,7 @@ def apply_settings(properties, settings):
     properties.stretch = settings.stretch_threshold
     properties.semi_regular = settings.semi_regular
     properties.drop_components = settings.drop_components
+    properties.density = settings.density
     properties.strict = settings.strict
     properties.seed = settings.seed
     properties.threads = settings.threads
@@ -171,6 +184,7 @@ def draw_settings(layout, properties):
     column = layout.column()
     column.prop(properties, "refinement", expand=True)
     column.prop(properties, "vertices")
+    column.prop(properties, "density")
     column.prop(properties, "error")
     column.prop(properties, "levels")
     if properties.refinement == "ADAPTIVE":
