@@ -252,6 +252,8 @@ class Decimation {
     }
   }
 
+  double fineness(int a, int b) const { return options_.fineness.empty() ? 1.0 : 0.5 * (options_.fineness[a] + options_.fineness[b]); }
+
   // The part of a collapse's cost that the rest only multiplies, by no less than 1: the distance to the surface and the longest edge.
   double least_cost(int v, const Star& star, std::size_t spoke) const {
     const Vec3& target = star.spokes[spoke].at;
@@ -261,7 +263,7 @@ class Decimation {
     });
     const VertexQuadric &mine = quadrics_[v], &other = quadrics_[star.spokes[spoke].end];
     const double cost = (mine.planes(target) + other.planes(target)) / std::max(mine.area + other.area, 1e-300) + options_.evenness * longest;
-    const double finer = options_.fineness.empty() ? 1.0 : 0.5 * (options_.fineness[v] + options_.fineness[star.spokes[spoke].end]);
+    const double finer = fineness(v, star.spokes[spoke].end);
     return cost * finer * finer;
   }
 
@@ -270,7 +272,7 @@ class Decimation {
   double curve_edge_without(const Star& star, std::size_t spoke) const {
     for (const Star::Spoke& other : star.spokes)
       if (other.end != star.spokes[spoke].end && (other.half_edge < 0 || features().on(mesh_, other.half_edge)))
-        return (other.at - star.spokes[spoke].at).norm();
+        return (other.at - star.spokes[spoke].at).norm() * fineness(other.end, star.spokes[spoke].end);
     return 0;
   }
 
