@@ -29,6 +29,19 @@ def world_matrix(rows):
     return matrix
 
 
+def mirror_plane(matrix, axis):
+    """The plane through the origin of an object with that matrix, across one of its axes (0 to 2), in world space: its normal and its offset along it.
+
+    Raises MatrixError where what is symmetric in the object's space would not be so in world space.
+    """
+    across = numpy.linalg.inv(matrix)[axis, :3]
+    normal = across / numpy.linalg.norm(across)
+    along = matrix[:3, axis] / numpy.linalg.norm(matrix[:3, axis])
+    if abs(abs(normal @ along) - 1) > 1e-9:
+        raise MatrixError(f"its {'XYZ'[axis]} axis is sheared, so that mirror images across it are none in world space")
+    return tuple((normal + 0.0).tolist()) + (float(normal @ matrix[:3, 3]) + 0.0,)
+
+
 def mirrors(matrix):
     return numpy.linalg.det(matrix[:3, :3]) < 0
 

@@ -44,6 +44,14 @@ def diagonal(obj):
 
 
 @contextlib.contextmanager
+def mirrored_axis(obj):
+    """The axis ("x", "y" or "z") in which a Mirror modifier mirrors the object about its own origin; "" if none does, or they mirror in several ways."""
+    mirrors = [modifier for modifier in obj.modifiers if modifier.type == "MIRROR" and modifier.show_viewport]
+    if len(mirrors) != 1 or mirrors[0].mirror_object is not None or sum(mirrors[0].use_axis) != 1:
+        return ""
+    return "xyz"[list(mirrors[0].use_axis).index(True)]
+
+
 def evaluated(context, obj):
     """Gives a dependency graph in which the object has its modifiers applied, also where it is switched off in the viewports or its collections are."""
     view_layer = context.view_layer

@@ -12,12 +12,11 @@ from . import plans
 from .batch import Batch, BatchOptions, OutputError
 from .native import NativeMissing, explain
 from .process import Processes, WorkerFailed, bpy_available
-from .settings import COMPONENTS, FACES, TOPOLOGIES, RemeshSettings, SettingsError
+from .settings import COMPONENTS, FACES, SYMMETRIES, SYMMETRY_SIDES, TOPOLOGIES, RemeshSettings, SettingsError
 from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
 LATER_COMMANDS = ("encode", "decode", "bench")
-LATER_OPTIONS = ("--symmetry",)
 PROGRAM = "hybrid-mesh"
 
 
@@ -88,6 +87,8 @@ def _settings(arguments):
         stretch_threshold=arguments.stretch,
         semi_regular=arguments.semi_regular,
         features=arguments.features,
+        symmetry=arguments.symmetry,
+        symmetry_side=arguments.symmetry_side,
         drop_components=arguments.drop_components,
         density=arguments.density or "",
         strict=arguments.strict,
@@ -161,9 +162,6 @@ def _known(argv):
     """The arguments, unless they ask for what this version does not have yet."""
     if argv and argv[0] in LATER_COMMANDS:
         raise WrongArguments(f"{argv[0]} comes with a later version; there are remesh, compare and info")
-    for argument in argv:
-        if argument.split("=")[0] in LATER_OPTIONS:
-            raise WrongArguments(f"{argument.split('=')[0]} comes with a later version")
     return argv
 
 
@@ -199,6 +197,10 @@ def _parser():
         "says how small quads are: edges are 4^(1 - 2 v) times as long where its value is v, a quarter at 1, as without at 0.5, four times at 0; as many vertices "
         "in all; adaptive: errors count more where it is high",
     )  # fmt: skip
+        "--symmetry", type=_symmetry, default="none", metavar="auto|x|y|z|none|NX,NY,NZ,D",
+        help="a mesh that is its own mirror image: in the plane where x (y, z) is 0, in the plane with that normal and offset, or in one that is found (auto)",
+    )  # fmt: skip
+    shape.add_argument("--symmetry-side", choices=SYMMETRY_SIDES, default="positive", help="what is mirrored: the side that the normal points to (default), the other, or the average of both")
     shape.add_argument("--stretch", type=float, default=4.0, metavar="X", help="grow skin where the map is stretched more than this (default 4)")
     shape.add_argument("--plan", metavar="FILE.json", help="take base quads and irregular operations from a plan, as NAME.plan.json of another remesh")
     shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
@@ -274,6 +276,18 @@ def _features(text):
         return float(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"must be auto, none or an angle in degrees, not {text!r}") from None
+
+
+def _symmetry(text):
+    if text in SYMMETRIES:
+        return text
+    try:
+        numbers = tuple(float(number) for number in text.split(","))
+        if len(numbers) == 4:
+            return numbers
+    except ValueError:
+        pass
+    raise argparse.ArgumentTypeError(f"must be {', '.join(SYMMETRIES)} or a plane NX,NY,NZ,OFFSET, not {text!r}")
 
 
 def _base(text):

@@ -111,6 +111,8 @@ def repatched(report, operation, outcome, most_vertices=0):
     if made.get("density"):
         made["density"]["met"] = None
         made["warnings"].append(f"the density {made['density']['name']!r} does not apply to the new quads, which are even; a remesh with the plan makes them follow it")
+    if made.pop("symmetry", None):
+        made["warnings"].append("the mesh is no longer symmetric: only one side of it was laid out anew")
     before, after = outcome["energy_before"], outcome["energy_after"]
     if not after < before:
         made["warnings"].append(f"the new quads are no better than those that they replace: their distortion, with the rings around, was {before:.3g} and is {after:.3g}")

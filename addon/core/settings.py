@@ -13,6 +13,8 @@ BASES = ("auto", "min")
 FEATURES = ("auto", "none")
 TOPOLOGIES = ("auto", "late", "base")
 COMPONENTS = ("apart", "joined")
+SYMMETRIES = ("none", "auto", "x", "y", "z")
+SYMMETRY_SIDES = ("positive", "negative", "average")
 
 # How an option is called where the user typed it; the command line's name is the one people look up.
 OPTION_NAMES = {
@@ -28,6 +30,8 @@ OPTION_NAMES = {
     "stretch_threshold": "--stretch",
     "semi_regular": "--semi-regular",
     "features": "--features",
+    "symmetry": "--symmetry",
+    "symmetry_side": "--symmetry-side",
     "drop_components": "--drop-components",
     "density": "--density",
     "strict": "--strict",
@@ -55,6 +59,8 @@ class RemeshSettings:
     stretch_threshold: float = 4.0  # above it irregular operations grow skin
     semi_regular: bool = False  # no irregular operations
     features: object = "auto"  # sharp edges: "auto" where flat or smooth faces meet at them, "none", or the angle in degrees from which they are kept
+    symmetry: object = "none"  # the mesh is its own mirror image: "auto" in a plane that is found, "x", "y", "z" across that axis, or a plane's normal and offset
+    symmetry_side: str = "positive"  # what is mirrored: the surface on the side that the normal points to, on the other ("negative"), or their "average"
     drop_components: float = 0.0  # components below this fraction of the area are removed
     density: str = ""  # name of the attribute by whose values, in 0..1, quads are smaller or larger; empty: none
     strict: bool = False  # refuse input that needs repair; a poor result is an error
@@ -83,6 +89,11 @@ class RemeshSettings:
         if self.features not in FEATURES:
             least, most = bounds.least_feature_angle, bounds.most_feature_angle
             _number("features", self.features, lambda value: least <= value <= most, f"auto, none or an angle from {least:g} to {most:g} degrees")
+        if isinstance(self.symmetry, str):
+            _choice("symmetry", self.symmetry, SYMMETRIES)
+        else:
+            _plane("symmetry", self.symmetry)
+        _choice("symmetry_side", self.symmetry_side, SYMMETRY_SIDES)
         _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")
         if not isinstance(self.density, str):
             raise SettingsError(f"--density must be the name of an attribute, not {self.density!r}")
@@ -102,6 +113,8 @@ class RemeshSettings:
         del values["threads"], values["plan"]
         if not self.density:
             del values["density"]
+        if self.symmetry == "none":
+            del values["symmetry"], values["symmetry_side"]
         return values
 
     def identity(self):
@@ -146,6 +159,12 @@ def _fraction(name, value, end, whole):
 def _number(name, value, fits, bounds):
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or not fits(value):
         raise SettingsError(f"{OPTION_NAMES[name]} must be {bounds}, not {value!r}")
+
+
+def _plane(name, value):
+    numbers = isinstance(value, (tuple, list)) and len(value) == 4 and all(isinstance(n, (int, float)) and math.isfinite(n) for n in value)
+    if not numbers or not any(value[:3]):
+        raise SettingsError(f"{OPTION_NAMES[name]} must be one of {', '.join(SYMMETRIES)}, or a plane NX,NY,NZ,OFFSET, not {value!r}")
 
 
 def _choice(name, value, choices):

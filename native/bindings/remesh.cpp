@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bindings/remesh.h"
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -63,6 +64,28 @@ class Setting {
   std::string text() const {
     if (!py::isinstance<py::str>(value_)) refuse("text");
     return value_.cast<std::string>();
+  }
+
+  // An axis, or a normal and the plane's offset along it.
+  MirrorPlane plane() const {
+    MirrorPlane plane;
+    for (int i = 0; i < 3; ++i)
+      if (is(std::string(1, "xyz"[i]).c_str())) return {Vec3::Unit(i), 0};
+    const std::string expected = "'none', 'auto', 'x', 'y', 'z' or four numbers, a normal and an offset";
+    if (!py::isinstance<py::sequence>(value_) || py::isinstance<py::str>(value_) || py::len(value_) != 4) refuse(expected);
+    std::array<double, 4> numbers;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const py::object number = value_.attr("__getitem__")(i);
+      if (!PyFloat_Check(number.ptr()) && !PyLong_Check(number.ptr())) refuse(expected);
+      numbers[i] = PyFloat_AsDouble(number.ptr());
+      if (PyErr_Occurred()) throw py::error_already_set();
+    }
+    plane.normal = {numbers[0], numbers[1], numbers[2]};
+    const double length = plane.normal.stableNorm();
+    if (!std::isfinite(length) || !std::isfinite(numbers[3]) || !(length > 0)) refuse(expected);
+    plane.normal /= length;
+    plane.offset = numbers[3] / length;
+    return plane;
   }
 
   bool is(const char* word) const { return py::isinstance<py::str>(value_) && value_.cast<std::string>() == word; }
@@ -135,6 +158,24 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
       options.components = Components::Joined;
     else
       setting.refuse("'apart' or 'joined'");
+  } else if (key == "symmetry") {
+    if (setting.is("none")) {
+      options.symmetry = Symmetry::None;
+    } else if (setting.is("auto")) {
+      options.symmetry = Symmetry::Auto;
+    } else {
+      options.symmetry = Symmetry::Given;
+      options.mirror = setting.plane();
+    }
+  } else if (key == "symmetry_side") {
+    if (setting.is("positive"))
+      options.symmetry_side = SymmetrySide::Positive;
+    else if (setting.is("negative"))
+      options.symmetry_side = SymmetrySide::Negative;
+    else if (setting.is("average"))
+      options.symmetry_side = SymmetrySide::Average;
+    else
+      setting.refuse("'positive', 'negative' or 'average'");
   } else if (key == "remove_noise") {
     options.remove_noise = setting.number_below(limits::end_of_remove_noise);
   } else if (key == "stretch_threshold") {

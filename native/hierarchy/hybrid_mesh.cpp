@@ -132,14 +132,20 @@ int HybridMesh::depth() const {
   return depth;
 }
 
+// An edge and all that it is split into.
+std::vector<int> HybridMesh::with_parts(int edge) const {
+  std::vector<int> parts{edge};
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    if (const int child = edges_[parts[k]].child; child >= 0) parts.insert(parts.end(), {child, child + 1});
+  return parts;
+}
+
 void HybridMesh::set_sharp(int base_quad, int side) {
-  std::vector<int> edges{half_edge(base_quad, side) >> 1};
-  while (!edges.empty()) {
-    Edge& edge = edges_[edges.back()];
-    edges.pop_back();
-    edge.sharp = true;
-    if (edge.child >= 0) edges.insert(edges.end(), {edge.child, edge.child + 1});
-  }
+  for (const int e : with_parts(half_edge(base_quad, side) >> 1)) edges_[e].sharp = true;
+}
+
+void HybridMesh::set_on_mirror(int root, int side) {
+  for (const int e : with_parts(half_edge(root, side) >> 1)) edges_[e].on_mirror = true;
 }
 
 void HybridMesh::take_sharp_sides(const HybridMesh& other) {
@@ -186,6 +192,7 @@ void HybridMesh::split_edge(int e) {
   edges_[e].child = first;
   edges_[first].parent = edges_[first + 1].parent = e;
   edges_[first].sharp = edges_[first + 1].sharp = edges_[e].sharp;
+  edges_[first].on_mirror = edges_[first + 1].on_mirror = edges_[e].on_mirror;
 }
 
 // Makes children, edges and vertices, but says nothing to the neighbours.

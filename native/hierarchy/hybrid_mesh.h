@@ -134,6 +134,10 @@ class HybridMesh {
   void set_sharp(int base_quad, int side);
   void take_sharp_sides(const HybridMesh& other);  // of a hierarchy with the same base
   bool has_sharp_sides() const;
+  // Whether a side of a root quad, or a part of it, is on the plane in which the mesh is to be mirrored (see mirrored()). It is no part of what is
+  // saved.
+  bool is_on_mirror(int node, int side) const { return edges_[nodes_[node].half[side] >> 1].on_mirror; }
+  void set_on_mirror(int root, int side);
   VertexId corner(int node, int i) const { return from(nodes_[node].half[i]); }
   // Square of the node in that of an ancestor: lower corner and width.
   struct Square {
@@ -255,6 +259,7 @@ class HybridMesh {
     std::int32_t origin = -1;              // node that made it, 4 * node + side (root) or 4 * node + inner edge
     std::int8_t level = 0;
     bool sharp = false;
+    bool on_mirror = false;
   };
   struct FreeVertex {
     std::int32_t origin = -1;  // 4 * node + corner of a root quad
@@ -285,6 +290,7 @@ class HybridMesh {
   Sector sector_right(HalfEdge leaving, int cap) const;  // clockwise
   SideLink holder_or_coarser(HalfEdge h) const;
   bool finer(HalfEdge h) const;
+  std::vector<int> with_parts(int edge) const;
   int add_edge(VertexId from, VertexId to, int level, int origin);
   void split_edge(int edge);
   int split(int node);

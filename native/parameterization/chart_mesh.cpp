@@ -110,13 +110,18 @@ ChartMesh::ChartMesh(const PatchedSurface& surface, const std::vector<std::array
 void ChartMesh::hold_features(const std::vector<char>& corner) {
   for (int v = 0; v < static_cast<int>(points.size()); ++v) {
     if (!mesh.vertex_alive(v) || kind[v] == Kind::Cone) continue;
+    const bool is_corner = v < static_cast<int>(corner.size()) && corner[v];
     std::vector<Complex> along;
     for_star(v, [&](int g, const Complex& a, const Complex&) {
       if (is_sharp(g)) along.push_back(a - uv[v]);
     });
+    if (along.empty() && is_corner && mesh.is_boundary(v)) {
+      kind[v] = Kind::Pinned;
+      held.resize(points.size(), 0);
+      held[v] = 1;
+    }
     if (along.empty()) continue;
     kind[v] = Kind::Pinned;
-    const bool is_corner = v < static_cast<int>(corner.size()) && corner[v];
     if (is_corner || along.size() != 2 || mesh.is_boundary(v)) continue;
     const bool along_u = std::abs(along[0].real()) > std::abs(along[0].imag());
     const double across = along_u ? std::abs(along[1].imag()) : std::abs(along[1].real());
@@ -163,6 +168,11 @@ ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const T
       uv[vertex_of[v]] = charts.uv[v];
       kind[vertex_of[v]] = charts.kind[v];
     }
+  if (!charts.held.empty()) {
+    held.assign(points.size(), 0);
+    for (int v = 0; v < static_cast<int>(charts.points.size()); ++v)
+      if (charts.mesh.vertex_alive(v)) held[vertex_of[v]] = charts.held[v];
+  }
 }
 
 std::vector<int> ChartMesh::movable_vertices() const {

@@ -102,6 +102,7 @@ class ChartMesh {
   std::vector<Transition> corner;  // per half-edge h: from the frame of from(h) to the chart of h's face
   std::vector<Transition> gluing;  // per half-edge: from the chart of its face to that of the face across
   std::vector<char> sharp;         // per name of an edge: is it on a feature? Empty: none is
+  std::vector<char> held;          // per vertex: a corner of the boundary, pinned for good. Empty: none is
   double scale = 1;                // lengths are scaled so that the surface's area is the number of patches
 
  private:

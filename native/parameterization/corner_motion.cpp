@@ -37,7 +37,7 @@ constexpr double kThin = 1e-9;  // determinant below which an energy is a roundi
 
 // Features' corners stay where they are.
 bool CornerMotion::is_corner(int v) const {
-  if (c_.kind[v] != ChartMesh::Kind::Pinned || !c_.mesh.is_boundary(v)) return false;
+  if (c_.kind[v] != ChartMesh::Kind::Pinned || !c_.mesh.is_boundary(v) || (!c_.held.empty() && c_.held[v])) return false;
   bool on_feature = false;
   c_.for_star(v, [&](int h, const Complex&, const Complex&) { on_feature |= c_.is_sharp(h); });
   return !on_feature;
@@ -67,6 +67,7 @@ int CornerMotion::last_half_edge(int v) const {
 int CornerMotion::next(int v, bool forward) const { return forward ? c_.mesh.to(c_.mesh.out[v]) : c_.mesh.apex(last_half_edge(v)); }
 
 int CornerMotion::move(int corner, bool forward, int sweeps, int others) {
+  if (!c_.held.empty() && c_.held[corner]) return -1;
   const int first = c_.mesh.out[corner], last = last_half_edge(corner);
   const int leaves = forward ? EditMesh::next(first) : EditMesh::prev(last), u = c_.mesh.origin[leaves];
   if (!c_.movable(u) && (others == kMostOthers || move(u, forward, sweeps, others + 1) < 0)) return -1;

@@ -9,6 +9,7 @@
 #include <queue>
 #include <string>
 
+#include "hierarchy/mirrored.h"
 #include "remesh/surface_fit.h"
 #include "remesh/surface_samples.h"
 
@@ -32,15 +33,23 @@ std::int64_t split_vertices(const HybridMesh& hierarchy) {
 // else the first split would quadruple the mesh, and what was measured before would say little about it.
 class LeafMesh {
  public:
-  LeafMesh(const HybridMesh& hierarchy, int deepest) : hierarchy_(hierarchy), deepest_(deepest) {}
+  LeafMesh(const HybridMesh& hierarchy, const AdaptiveOptions& options)
+      : hierarchy_(hierarchy), deepest_(options.deepest), cut_euler_(options.cut_euler) {
+    count_mirror();
+  }
 
   const HybridMesh& hierarchy() const { return hierarchy_; }
-  std::int64_t vertices() const { return splits_all() ? split_vertices(hierarchy_) : closed_vertices(hierarchy_); }
+  std::int64_t vertices() const {
+    const std::int64_t own = splits_all() ? split_vertices(hierarchy_) : closed_vertices(hierarchy_);
+    if (!cut_euler_) return own;
+    const bool splits = splits_all() || (!hierarchy_.conforming() && hierarchy_.closure() == FaceClosure::Quads);
+    return 2 * own - (splits ? 2 : 1) * mirror_sides_ - *cut_euler_;
+  }
   // The vertices with every leaf refined.
   std::int64_t vertices_of_next_level() const {
-    HybridMesh next = hierarchy_;
-    next.refine_uniform(next.depth() + 1);
-    return LeafMesh(next, deepest_).vertices();
+    LeafMesh next = *this;
+    next.refine_all();
+    return next.vertices();
   }
   // The hierarchy whose final mesh is meant.
   HybridMesh closed() const {
@@ -50,14 +59,31 @@ class LeafMesh {
     return result;
   }
   bool may_refine(int leaf) const { return hierarchy_.level(leaf) < deepest_; }
-  void refine(int leaf, std::vector<int>* refined = nullptr) { hierarchy_.refine_balanced(leaf, refined); }
-  void refine_all() { hierarchy_.refine_uniform(hierarchy_.depth() + 1); }
+  // The nodes that are refined, in order.
+  std::vector<int> refine(int leaf) {
+    std::vector<int> refined;
+    hierarchy_.refine_balanced(leaf, &refined);
+    if (cut_euler_)
+      for (const int n : refined)
+        for (int s = 0; s < 4; ++s) mirror_sides_ += hierarchy_.is_on_mirror(n, s);
+    return refined;
+  }
+  void refine_all() {
+    hierarchy_.refine_uniform(hierarchy_.depth() + 1);
+    count_mirror();
+  }
 
  private:
   bool splits_all() const { return hierarchy_.closure() == FaceClosure::Quads && hierarchy_.conforming() && hierarchy_.depth() < deepest_; }
 
+  void count_mirror() {
+    if (cut_euler_) mirror_sides_ = count_mirror_sides(hierarchy_);
+  }
+
   HybridMesh hierarchy_;
   int deepest_;
+  std::optional<int> cut_euler_;
+  std::int64_t mirror_sides_ = 0;  // of leaves
 };
 
 bool uses(const LeafMesh& mesh, std::int64_t budget) { return static_cast<double>(mesh.vertices()) >= full * static_cast<double>(budget); }
@@ -105,10 +131,9 @@ class Splitter {
   void split(int leaf) {
     progress_.check();
     if (!mesh_.hierarchy().is_leaf(leaf)) return;
-    refined_.clear();
-    mesh_.refine(leaf, &refined_);
+    const std::vector<int> refined = mesh_.refine(leaf);
     errors_.resize(mesh_.hierarchy().node_count(), 0.0);
-    for (const int node : refined_)
+    for (const int node : refined)
       for (int k = 0; k < 4; ++k) {
         errors_[mesh_.hierarchy().first_child(node) + k] = errors_[node] * kept_by_child;
         push(mesh_.hierarchy().first_child(node) + k);
@@ -162,7 +187,6 @@ class Splitter {
   const std::int64_t budget_;
   const Progress& progress_;
   std::priority_queue<Entry> queue_;
-  std::vector<int> refined_;
 };
 
 class AdaptiveRefinement {
@@ -171,7 +195,7 @@ class AdaptiveRefinement {
       : surface_(surface), options_(options), budget_(options.vertices > 0 ? options.vertices : most_vertices), base_(base) {}
 
   QuadMesh run(HybridMesh& result, const Progress& progress) {
-    const std::int64_t least = closed_vertices(base_);
+    const std::int64_t least = base_vertices();
     if (least > budget_)
       throw Error(ErrorCode::InvalidInput,
                   "the surface needs at least " + std::to_string(least) + " vertices, more than the " + std::to_string(budget_) + " allowed");
@@ -215,6 +239,13 @@ class AdaptiveRefinement {
     return importance;
   }
 
+  // Of the base as it is: where every leaf is split later on, it is not yet.
+  std::int64_t base_vertices() const {
+    AdaptiveOptions as_it_is = options_;
+    as_it_is.deepest = 0;
+    return LeafMesh(base_, as_it_is).vertices();
+  }
+
   double distance(const QuadMesh& mesh, const Progress& progress) const { return surface_.distance(to_soup(mesh), DistanceOptions(), progress).l2; }
 
   LeafErrors errors_of(const LeafMesh& leaves, const Progress& progress) const {
@@ -241,7 +272,7 @@ class AdaptiveRefinement {
 
   // --- up to a number of vertices ----------------------------------------------------------------------------------------------------------
   Fitted refine_to_budget(const Progress& progress) const {
-    LeafMesh leaves(base_, options_.deepest);
+    LeafMesh leaves(base_, options_);
     if (leaves.vertices() > budget_) return fitted(base_, progress);
     const auto allowed = static_cast<double>(budget_);
     while (leaves.hierarchy().depth() < options_.deepest && static_cast<double>(leaves.vertices_of_next_level()) < 0.35 * allowed)
@@ -292,7 +323,7 @@ class AdaptiveRefinement {
 
   Fitted refine_to_error(const Progress& progress) const {
     Steps steps(progress);
-    LeafMesh leaves(base_, options_.deepest);
+    LeafMesh leaves(base_, options_);
     Fitted base = fitted(base_, steps.next());
     if (leaves.vertices() > budget_ || distance(base.mesh, steps.next()) <= options_.error) return base;
     std::optional<Missing> low;

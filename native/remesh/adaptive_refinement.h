@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "base/context.h"
 #include "base/limits.h"
@@ -17,6 +18,8 @@ struct AdaptiveOptions {
   int deepest = limits::most_levels;  // finest level of a leaf
   // Of quads, in the maps' space: where these are to be smaller, errors count more. None: errors count the same everywhere.
   const SizeField* sizes = nullptr;
+  // Of half a mesh, to be joined with its mirror image along its marked sides: see HalfSurface. Vertices are then those of both.
+  std::optional<int> cut_euler;
 };
 
 // The vertices of the mesh of a hierarchy's leaves, closed as the hierarchy says.

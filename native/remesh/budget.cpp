@@ -26,8 +26,9 @@ std::int64_t uniform_vertices(std::int64_t quads, std::int64_t euler, std::int64
 
 Budget plan_budget(const RemeshOptions& options, const Source& source, const Target& target) {
   Budget b;
-  b.vertices = options.vertices > 0 ? options.vertices : static_cast<std::int64_t>(source.repaired.points.size());
+  b.vertices = options.vertices > 0 ? options.vertices : source.points;
   if (target.vertices > 0) b.vertices = target.vertices;
+  b.vertices /= source.copies();
   // Roughly what the topology asks for at least.
   const TopologySummary& topology = source.topology;
   const bool features = target.features && source.keeps_features;
@@ -48,8 +49,9 @@ Budget with_levels(Budget b, int levels, const RemeshOptions& options, const Sou
   b.levels = levels;
   const double cells = std::pow(4.0, levels);
   b.boundary_side = 0.5 * std::pow(2.0, levels) / cells;
-  b.base_size = (static_cast<double>(b.vertices) - static_cast<double>(source.topology.euler)) / cells;
-  if (options.base == BaseSize::Given) b.base_size = options.base_quads, b.boundary_side = 0;
+  const double copies = source.copies();
+  b.base_size = (static_cast<double>(b.vertices) - static_cast<double>(source.made.euler) / copies) / cells;
+  if (options.base == BaseSize::Given) b.base_size = options.base_quads / copies, b.boundary_side = 0;
   if (options.base == BaseSize::Minimal) b.base_size = 6, b.boundary_side = 0;
   return b;
 }

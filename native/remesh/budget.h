@@ -8,6 +8,7 @@
 namespace hybrid_mesh {
 
 // Levels and base size of a mesh with a vertex budget.
+// Of what is remeshed: of a half half of the mesh's.
 struct Budget {
   std::int64_t vertices = 0;
   int levels = 0;
@@ -18,7 +19,7 @@ struct Budget {
 
 // What a candidate is planned for.
 struct Target {
-  std::int64_t vertices = 0;  // 0: what the options say, or as many as the source has
+  std::int64_t vertices = 0;  // of the whole mesh; 0: what the options say, or as many as the source has
   int levels_less = 0;        // than usual above the base, which has four times as many quads for each
   bool features = true;       // does the base keep the source's, if there are any?
 };

@@ -15,6 +15,7 @@
 #include "remesh/adaptive_refinement.h"
 #include "remesh/late_topology.h"
 #include "remesh/layout_search_options.h"
+#include "remesh/mirror_sides.h"
 #include "remesh/outlines.h"
 #include "remesh/quality.h"
 #include "remesh/skin.h"
@@ -62,7 +63,9 @@ bool has_twins(const QuadGraph& base) {
 }
 
 // Has the coarsest mesh with all that has opened no more vertices than are allowed?
-bool is_within(const RemeshOptions& options, const Candidate& c) { return options.vertices == 0 || closed_vertices(c.hierarchy) <= options.vertices; }
+bool is_within(const RemeshTask& task, const Candidate& c) {
+  return task.options.vertices == 0 || whole_vertices(c.hierarchy, task.source) <= task.options.vertices;
+}
 
 // What opened on the finest level finds no room.
 void close_finest(Candidate& c) {
@@ -86,6 +89,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
     if (base_options.size < kSmallBase) base_options.least = static_cast<int>(base_options.size);
   }
   base_options.seed = request.seed;
+  base_options.mirror = task.source.mirror;
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
   const BaseDomain base = make_base(task, origin, in_use);
   const WorkingSurface& working = in_use.of(task, origin);
@@ -110,8 +114,8 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   if (options.refinement == Refinement::Uniform) return c;
   // Of a level as fine as the last one that something opens on, or grows skin on, it may be too much.
   for (const bool skin : {true, false})
-    if (!is_within(options, c)) c = made_with(budget.vertices, skin);
-  if (!is_within(options, c)) close_finest(c);
+    if (!is_within(task, c)) c = made_with(budget.vertices, skin);
+  if (!is_within(task, c)) close_finest(c);
   return c;
 }
 
@@ -134,7 +138,7 @@ void coarsen(Candidate& c) {
 
 // The vertices of the coarsest uniform mesh that the candidate's hierarchy has, or of one with so many levels.
 std::int64_t vertices_needed(const Candidate& c, const Source& source, int levels) {
-  return uniform_vertices(c.finest_quads, source.topology.euler, c.finest_boundary_sides, std::max(c.finest, levels) - c.finest);
+  return uniform_vertices(c.finest_quads, source.made.euler, c.finest_boundary_sides, std::max(c.finest, levels) - c.finest);
 }
 
 // Would a uniform mesh one level finer use the vertices allowed, but for a few quads that have opened above the base? Then the budget shrinks by
@@ -145,12 +149,12 @@ bool just_misses(const RemeshTask& task, Budget& budget, const Candidate& c) {
   if (!task.base.series || !c.unopened.empty() || options.base != BaseSize::Minimal || options.refinement != Refinement::Uniform ||
       options.levels >= 0 || options.error > 0)
     return false;
-  const std::int64_t euler = task.source.topology.euler;
-  const int levels = levels_within(budget.vertices, c.finest, c.finest_quads, euler, c.finest_boundary_sides);
+  const std::int64_t euler = task.source.made.euler, most = budget.vertices * task.source.copies();
+  const int levels = levels_within(most, c.finest, c.finest_quads, euler, c.finest_boundary_sides);
   const auto vertices = [&](int more) {
     return static_cast<double>(uniform_vertices(c.finest_quads, euler, c.finest_boundary_sides, levels + more - c.finest));
   };
-  const auto allowed = static_cast<double>(budget.vertices);
+  const auto allowed = static_cast<double>(most);
   if (vertices(0) > allowed || vertices(0) >= enough * allowed || vertices(1) > few * allowed) return false;
   budget.shrink *= 0.997 * allowed / vertices(1);
   return true;
@@ -161,7 +165,7 @@ void set_levels(const RemeshTask& task, const Budget& budget, Candidate& c) {
   c.levels = budget.levels;
   // With a base of any size the number of levels is what makes a mesh of the size asked for.
   if (options.base == BaseSize::Minimal && options.refinement == Refinement::Uniform && options.levels < 0 && options.error == 0)
-    c.levels = levels_within(budget.vertices, c.finest, c.finest_quads, task.source.topology.euler, c.finest_boundary_sides);
+    c.levels = levels_within(budget.vertices * task.source.copies(), c.finest, c.finest_quads, task.source.made.euler, c.finest_boundary_sides);
 }
 
 }  // namespace
@@ -172,6 +176,8 @@ std::vector<BaseRequest> base_requests(const RemeshOptions& options, bool anothe
     BaseRequest& r = requests.emplace_back();
     // Nearby decisions differ.
     r.seed = options.seed + 1000003ull * static_cast<std::uint64_t>(k + (another ? kRequests : 0));
+    // With edits the base may have sides that it cannot have beside its mirror image.
+    if (options.symmetry != Symmetry::None && k > 1) r.base_edits = false;
     if (options.base != BaseSize::Minimal) continue;
     // The same size a few times, the cheapest way first, then larger bases, which are easier to map; at last without operations.
     constexpr std::array<int, kRequests> factor{1, 1, 1, 1, 2, 4, 16, 64};
@@ -191,12 +197,29 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
   return names;
 }
 
+namespace {
+
+// Where nothing is mended, see make_working_surface(): around the ends of a half's cut, too, which are to stay where they are.
+std::vector<char> held_faces(const RemeshTask& task) {
+  std::vector<char> held = task.base.held();
+  if (!task.source.half) return held;
+  const HalfSurface& half = *task.source.half;
+  held.resize(half.mesh.faces.size(), 0);
+  for (std::size_t f = 0; f < held.size(); ++f)
+    for (const int v : half.mesh.faces[f])
+      if (half.corner[v]) held[f] = 1;
+  return held;
+}
+
+}  // namespace
+
 const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int64_t faces, Features features, double angle) {
   if (faces != faces_ || features != features_) {
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
-    surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), task.base.held(),
+    surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task),
                                     feature_options(features, angle), task.source.density.sizes);
+    if (task.source.mirror) hold_ends_of_cut(surface_, *task.source.mirror);
     faces_ = faces;
     features_ = features;
   }
@@ -277,13 +300,19 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
   HybridMesh& hierarchy = made.hierarchy();
   hierarchy.set_closure(task.options.faces);
   Candidate c;
-  c.keeps_features = !working.features.empty();
+  const std::vector<char>& on_feature = working.features.edges;
+  c.keeps_features = std::find(on_feature.begin(), on_feature.end(), 1) != on_feature.end();
   c.base_quads = base.patch_count();
   c.base_vertices = base.node_count;
   c.finest = made.level();
-  c.finest_quads = made.quads().graph().patch_count();
+  const int copies = task.source.copies();
+  c.finest_quads = copies * made.quads().graph().patch_count();
   for (const auto& n : made.quads().graph().neighbours)
-    for (const PatchSide& s : n) c.finest_boundary_sides += s.patch < 0;
+    for (const PatchSide& s : n) c.finest_boundary_sides += copies * (s.patch < 0);
+  if (task.source.mirror) {
+    mark_mirror(hierarchy, *task.source.mirror);
+    c.finest_boundary_sides -= copies * mirror_sides(hierarchy, c.finest);
+  }
   c.finest_irregular = irregular_names(hierarchy.level_mesh(c.finest));
   c.plan_root = made.root_numbers();
   c.opened = made.opened();
@@ -299,7 +328,10 @@ Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& worki
   move_outline(plan.base, [&](const Vec3& p) { return placement.from_unit(p); });
   c.plan = to_json(plan);
   c.hierarchy = std::move(hierarchy);
-  if (task.options.refinement == Refinement::Adaptive) coarsen(c);
+  if (task.options.refinement == Refinement::Adaptive) {
+    coarsen(c);
+    if (task.source.mirror) mark_mirror(c.hierarchy, *task.source.mirror);
+  }
   task.watch.stop();
   return c;
 }

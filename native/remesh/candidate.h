@@ -30,13 +30,13 @@ struct Candidate {
 
   // The last level with operations (0: none), all of whose quads have a map of their own.
   int finest = 0;
-  std::int64_t finest_quads = 0, finest_boundary_sides = 0;
-  std::vector<VertexId> finest_irregular;             // sorted
-  std::vector<int> opened_on;                         // per event of the topology: the level
-  std::vector<std::pair<int, std::string>> unopened;  // events of the topology that found no room above the base, and why
-  std::vector<std::string> waited;                    // per event: why it opened no sooner; empty with a plan
-  bool keeps_features = false;                        // are sharp edges of the surface sides of the base?
-  std::string lost_features;                          // why they are not; empty: they are, or there are none
+  std::int64_t finest_quads = 0, finest_boundary_sides = 0;  // of a half: with its mirror image
+  std::vector<VertexId> finest_irregular;                    // sorted
+  std::vector<int> opened_on;                                // per event of the topology: the level
+  std::vector<std::pair<int, std::string>> unopened;         // events of the topology that found no room above the base, and why
+  std::vector<std::string> waited;                           // per event: why it opened no sooner; empty with a plan
+  bool keeps_features = false;                               // are sharp edges of the surface sides of the base?
+  std::string lost_features;                                 // why they are not; empty: they are, or there are none
 
   QuadMesh final_mesh;                                // fitted
   std::vector<QuadMesh> level_meshes;                 // of every level, fitted; the last is the final mesh

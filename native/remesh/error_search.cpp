@@ -9,6 +9,7 @@
 #include "base/limits.h"
 #include "remesh/figures.h"
 #include "remesh/level_fits.h"
+#include "remesh/mirror_sides.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -58,9 +59,7 @@ class ErrorSearch {
  private:
   const RemeshOptions& options() const { return task_.options; }
 
-  std::int64_t most_vertices() const {
-    return options().vertices > 0 ? options().vertices : std::max(kMostVertices, static_cast<std::int64_t>(task_.source.repaired.points.size()));
-  }
+  std::int64_t most_vertices() const { return options().vertices > 0 ? options().vertices : std::max(kMostVertices, task_.source.points); }
 
   double measured_l2(const QuadMesh& mesh, std::int64_t samples) const {
     DistanceOptions distance;
@@ -72,7 +71,7 @@ class ErrorSearch {
   Attempt measured(const Candidate& c) const {
     double l2 = measured_l2(c.final_mesh, 20000);
     if (l2 <= 1.1 * options().error) l2 = measured_l2(c.final_mesh, DistanceOptions().samples);
-    return {static_cast<std::int64_t>(c.final_mesh.points.size()), l2};
+    return {whole_vertices(c.final_mesh, task_.source), l2};
   }
 
   // The first of the base's levels that meets the error bound, else the last one that the other bounds allow.

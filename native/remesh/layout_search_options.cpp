@@ -18,6 +18,7 @@ LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Bu
   search.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
   search.vertices = 30.0 * base.quads();
   if (base.has_features()) search.rounds = 0;  // edits would not keep them
+  if (options.symmetry != Symmetry::None && !request.base_edits) search.rounds = 0;
   if (options.base != BaseSize::Minimal) return search;
   search.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, search.vertices);
   if ((has_finer_operations(options, base, request) && !request.base_edits) || base.quads() < kFewQuads) {

@@ -103,8 +103,21 @@ void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
   adaptive.vertices = task.options.error > 0 && task.options.vertices == 0 ? 0 : vertices;
   adaptive.error = task.options.error;
   adaptive.sizes = task.source.density.sizes.get();
+  if (task.source.half) adaptive.cut_euler = task.source.half->cut_euler;
   if (task.options.levels >= 0) adaptive.deepest = task.options.levels;
   c.final_mesh = refine_adaptively(c.hierarchy, *task.source.reference, adaptive, task.progress.part(0.55, 0.8));
+}
+
+void measure_level(const RemeshTask& task, Candidate& c, int level, const DistanceReference* closed, const Progress& progress) {
+  const QuadMesh& mesh = c.level_meshes[level];
+  const bool last = level + 1 == static_cast<int>(c.level_meshes.size());
+  DistanceOptions samples;
+  if (!last) samples.samples = 30000;
+  const SurfaceDistance distance = task.source.reference->distance(to_soup(mesh), samples, progress);
+  if (last) c.distance = distance;
+  std::optional<SurfaceDistance> to_closed;
+  if (closed) to_closed = closed->distance(to_soup(mesh), samples, progress);
+  c.level_reports[level] = describe_level(c.hierarchy, level, mesh, distance, to_closed);
 }
 
 void finish_levels(const RemeshTask& task, Candidate& c) {
@@ -128,13 +141,7 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
       if (fitted.place(mesh)) options.turns = 0;
       fit_to_surface(mesh, c.hierarchy, options, part);
     }
-    DistanceOptions samples;
-    if (!last) samples.samples = 30000;
-    const SurfaceDistance distance = task.source.reference->distance(to_soup(mesh), samples, part);
-    if (last) c.distance = distance;
-    std::optional<SurfaceDistance> to_closed;
-    if (closed.at(j)) to_closed = closed.at(j)->distance(to_soup(mesh), samples, part);
-    c.level_reports[j] = describe_level(c.hierarchy, j, mesh, distance, to_closed);
+    measure_level(task, c, j, closed.at(j), part);
   });
   task.watch.stop();
 }

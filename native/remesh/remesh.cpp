@@ -15,6 +15,7 @@
 #include "remesh/protrusion.h"
 #include "remesh/quality.h"
 #include "remesh/report.h"
+#include "remesh/symmetry.h"
 #include "remesh/verdict.h"
 
 namespace hybrid_mesh {
@@ -28,13 +29,14 @@ void check_options(const RemeshOptions& options) {
   if (!(options.drop_components >= 0 && options.drop_components < 1)) refuse("drop_components must be in [0, 1)");
   if (!(options.remove_noise >= 0 && options.remove_noise < 1)) refuse("remove_noise must be in [0, 1)");
   if (options.base == BaseSize::Given && options.base_quads < 1) refuse("base_quads must be positive");
+  check_symmetry(options);
 }
 
 // Fits the final mesh and all levels.
 Candidate fitted(const RemeshTask& task, Candidate c, bool may_change_base) {
   const RemeshOptions& options = task.options;
   if (options.refinement == Refinement::Adaptive)
-    fit_adaptive(task, c, plan_budget(options, task.source, {}).vertices);
+    fit_adaptive(task, c, options.vertices > 0 ? options.vertices : task.source.points);
   else if (options.error > 0)
     c = meet_error(task, std::move(c), may_change_base);
   else
@@ -175,6 +177,28 @@ Candidate planned_remesh(const RemeshOptions& options, const Source& source, con
   return fitted(task, planned_candidate(task, plan), false);
 }
 
+// Of a surface that is to be symmetric: its half is remeshed and mirrored. Nothing where no symmetry is asked for, or none is found; the source then
+// says so. Afterwards the source is placed so that the plane goes through the origin.
+Found<Candidate> symmetric_remesh(const RemeshOptions& options, Source& source, BaseSurface& base, const Progress& progress, Stopwatch& watch) {
+  if (options.symmetry == Symmetry::None) return {};
+  progress.stage("symmetry");
+  watch.start("symmetry");
+  const std::optional<Source> half = half_source(source, options, progress.part(0.04, 0.05));
+  watch.stop();
+  if (!half) return {};
+  RemeshOptions of_half = options_of_half(options);
+  Found<Candidate> whole;
+  // Operations that do not go together with their mirror images are done without.
+  for (;;) {
+    const Candidate made = searched_remesh(of_half, *half, {}, base, progress.part(0.05, 0.9), watch);
+    whole = found([&] { return mirrored_candidate({options, source, base, progress.part(0.9, 0.95), watch}, *half, made); });
+    if (whole) return whole;
+    if (of_half.semi_regular) throw Error(ErrorCode::Unsupported, "the half of the mesh cannot be mirrored: " + whole.reason);
+    of_half.semi_regular = true;
+    source.symmetry["switched_off"].push_back("irregular operations: " + whole.reason);
+  }
+}
+
 // Everything was computed around the origin: brings maps and meshes to where the input stands.
 void place(Candidate& c, const Placement& placement, const SurfaceSeries* series) {
   HybridMesh& h = c.hierarchy;
@@ -202,12 +226,16 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
   Stopwatch watch;
   Source source = read_source(input, options, progress.part(0, 0.04), watch);
   BaseSurface base;
+  Found<Candidate> symmetric = symmetric_remesh(options, source, base, progress, watch);
   watch.start("topology");
-  std::vector<LateEvent> events = plan ? late_events_of(*plan, source.repaired, progress.part(0.04, 0.05))
-                                       : find_late_events(source.repaired, source.topology, options, progress.part(0.04, 0.05));
+  std::vector<LateEvent> events;
+  if (!symmetric)
+    events = plan ? late_events_of(*plan, source.repaired, progress.part(0.04, 0.05))
+                  : find_late_events(source.repaired, source.topology, options, progress.part(0.04, 0.05));
   watch.stop();
-  Candidate best = plan && plan->has_base() ? planned_remesh(options, source, *plan, std::move(events), base, progress, watch)
-                                            : searched_remesh(options, source, std::move(events), base, progress, watch);
+  Candidate best = symmetric                  ? std::move(*symmetric)
+                   : plan && plan->has_base() ? planned_remesh(options, source, *plan, std::move(events), base, progress, watch)
+                                              : searched_remesh(options, source, std::move(events), base, progress, watch);
   const RemeshTask task{options, source, base, progress, watch};
   progress.stage("measure");
   watch.start("measure");

@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "surface/polygon_soup.h"
+#include "surface/reflection.h"
 #include "surface/repair.h"
 
 namespace hybrid_mesh {
@@ -20,6 +21,10 @@ enum class TopologyMode { Auto, Late, Base };
 enum class BaseSize { Auto, Minimal, Given };
 // Whether sharp edges are kept. Auto: where the surface has flat or smooth faces that meet at angles; Given: all edges from an angle on.
 enum class Features { Auto, None, Given };
+// Whether the mesh is made its own mirror image. Auto: in the plane in which the surface nearly is, if there is one; Given: in RemeshOptions::mirror.
+enum class Symmetry { None, Auto, Given };
+// What is mirrored: the surface on the side of the plane that its normal points to, on the other, or the mean of both.
+enum class SymmetrySide { Positive, Negative, Average };
 
 struct RemeshOptions {
   std::int64_t vertices = 0;  // hard upper bound on the final mesh's vertices; 0 = none
@@ -35,7 +40,10 @@ struct RemeshOptions {
   double stretch_threshold = 4;  // above it skin is grown (irregular operations)
   bool semi_regular = false;     // no irregular operations
   Features features = Features::Auto;
-  double feature_angle = 40;   // degrees between the normals of two faces; with Features::Given
+  double feature_angle = 40;  // degrees between the normals of two faces; with Features::Given
+  Symmetry symmetry = Symmetry::None;
+  MirrorPlane mirror;  // where the input stands; with Symmetry::Given
+  SymmetrySide symmetry_side = SymmetrySide::Positive;
   double drop_components = 0;  // see RepairOptions
   std::string density;         // name of the attribute that the input's `density` holds, see density.h; empty: quads are even
   bool strict = false;         // refuse input that needs repair

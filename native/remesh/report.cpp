@@ -139,7 +139,7 @@ Json describe_features(const RemeshTask& task, const Candidate& c) {
 }
 
 Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& c) {
-  const TopologySummary t = summarize_topology(to_soup(c.final_mesh)), &topology = task.source.topology;
+  const TopologySummary t = summarize_topology(to_soup(c.final_mesh)), &topology = task.source.made;
   if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology.components ||
       t.boundary_loops != topology.boundary_loops || t.euler != topology.euler)
     throw Error(ErrorCode::Internal, "the final mesh does not have the surface's topology");
@@ -168,6 +168,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
                      {"self_intersections", finished.intersections.pairs},
                      {"self_intersections_of_input", finished.intersections.pairs_of_input}};
   if (task.options.error > 0) report["final"]["error_bound_met"] = d.l2 <= task.options.error;
+  if (!task.source.symmetry.is_null()) report["symmetry"] = task.source.symmetry;
   report["verdict"] = describe_verdict(reasons_against(finished), task.source.placement);
   report["warnings"] = warnings(finished);
   return report;

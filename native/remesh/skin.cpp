@@ -26,8 +26,8 @@ constexpr int kFittedLevel = 2, kFittedRounds = 2;
 constexpr double kLeastQuads = 60, kEnoughQuads = 250;
 
 // The number near `quads`, with so many sides on the boundary, of which a whole number of levels makes a mesh of the size asked for.
-double quads_for_budget(const Budget& budget, const TopologySummary& topology, double quads, double boundary_sides) {
-  const auto vertices = static_cast<double>(budget.vertices - topology.euler);
+double quads_for_budget(const Budget& budget, double euler, double quads, double boundary_sides) {
+  const double vertices = static_cast<double>(budget.vertices) - euler;
   for (double parts = 1;; parts *= 2) {
     const double size = vertices / (parts * parts) - 0.5 * boundary_sides / parts;
     if (size <= 1.6 * quads) return size;
@@ -42,8 +42,10 @@ SkinOptions minimal_options(const RemeshTask& task, const Budget& budget, const 
   double quads = base.quads(), sides = base.boundary_sides();
   for (; quads < kEnoughQuads && out.level != task.options.levels; ++out.level) quads *= 4, sides *= 2;
   if (quads < kLeastQuads) return {};
+  // A half's mirror image shares the vertices between them.
+  const double euler = task.source.mirror ? static_cast<double>(task.source.made.euler) / 2 : static_cast<double>(task.base.topology.euler);
   // Quads of even size first, which are to be refined regularly from there on, then what sticks out of them.
-  const double size = budget.shrink * quads_for_budget(budget, task.base.topology, quads, sides);
+  const double size = budget.shrink * quads_for_budget(budget, euler, quads, sides);
   out.even_quads = size - kRoomForARing;
   out.uneven = excess_of_stretch(std::pow(task.options.stretch_threshold, 0.45));
   out.rounds = 1;

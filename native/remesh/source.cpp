@@ -48,6 +48,8 @@ void close_small_handles(Source& source, double length, const Progress& progress
 // Fewer vertices a corner of features have no room for the quads around it.
 constexpr double kVerticesACorner = 10;
 
+}  // namespace
+
 void look_for_features(Source& source, const RemeshOptions& options) {
   std::optional<FeatureOptions> wanted = feature_options(options.features, options.feature_angle);
   if (!wanted) return;
@@ -55,11 +57,9 @@ void look_for_features(Source& source, const RemeshOptions& options) {
   const FeatureGraph graph = find_features(source.repaired, *wanted);
   source.has_features = !graph.empty();
   source.feature_corners = static_cast<int>(std::count(graph.corners.begin(), graph.corners.end(), 1));
-  source.keeps_features =
-      source.has_features && (options.vertices == 0 || kVerticesACorner * source.feature_corners <= static_cast<double>(options.vertices));
+  source.keeps_features = source.has_features && (options.vertices == 0 || kVerticesACorner * source.copies() * source.feature_corners <=
+                                                                               static_cast<double>(options.vertices));
 }
-
-}  // namespace
 
 std::optional<FeatureOptions> feature_options(Features features, double angle) {
   FeatureOptions options;
@@ -83,7 +83,8 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
     throw Error(ErrorCode::InvalidInput, "the input needs repair, which strict mode refuses: " + describe(source.repairs));
   source.placement = placement_of(source.repaired.points);
   if (options.remove_noise > 0) close_small_handles(source, options.remove_noise, progress);
-  source.topology = summarize_topology(to_soup(source.repaired));
+  source.topology = source.made = summarize_topology(to_soup(source.repaired));
+  source.points = static_cast<std::int64_t>(source.repaired.points.size());
   source.area = surface_area(source.repaired) / (source.placement.diagonal * source.placement.diagonal);
   look_for_features(source, options);
   source.density = read_density(input, options.density, source.repaired, source.placement);

@@ -12,22 +12,31 @@
 #include "remesh/stopwatch.h"
 #include "remesh/working_surface.h"
 #include "surface/distance.h"
+#include "surface/half_surface.h"
 #include "surface/topology_summary.h"
 
 namespace hybrid_mesh {
 
-// What is remeshed, read and repaired once for all candidates.
+// What is remeshed, read and repaired once for all candidates. With symmetry there are two: the whole, which results are measured against, and its
+// half, which is remeshed and then mirrored.
 struct Source {
   TriangleSurface repaired;  // where the input stands
   RepairReport repairs;
-  int removed_handles = 0;      // of noise, see RemeshOptions::remove_noise
-  TopologySummary topology;     // of `repaired`
-  Placement placement;          // that brings it to unit size
-  double area = 0;              // of unit size
-  bool has_features = false;    // sharp edges of the kind that is asked for
-  bool keeps_features = false;  // ... and is there room for them in the mesh that is asked for?
-  int feature_corners = 0;      // where they end, meet or turn
-  Density density;              // that quads are to have
+  int removed_handles = 0;   // of noise, see RemeshOptions::remove_noise
+  TopologySummary topology;  // of `repaired`
+  std::int64_t points = 0;   // of `repaired`; of a half: of it and its mirror image
+  TopologySummary made;      // of the mesh that is to be made: that of `repaired`, or of the half and its mirror image
+  // Of a half: the normal of the plane that it is mirrored in, which goes through the origin once placed, and where it is on the whole.
+  std::optional<Vec3> mirror;
+  std::shared_ptr<const HalfSurface> half;
+  int copies() const { return mirror ? 2 : 1; }  // of `repaired` in the mesh that is made
+  nlohmann::ordered_json symmetry;               // of the report; null: none was asked for
+  Placement placement;                           // that brings it to unit size
+  double area = 0;                               // of unit size
+  bool has_features = false;                     // sharp edges of the kind that is asked for
+  bool keeps_features = false;                   // ... and is there room for them in the mesh that is asked for?
+  int feature_corners = 0;                       // where they end, meet or turn
+  Density density;                               // that quads are to have
   std::string fingerprint;
   std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
 };
@@ -43,6 +52,9 @@ struct RemeshTask {
 
 // How sharp edges are found, as the options ask; none: they are not kept.
 std::optional<FeatureOptions> feature_options(Features features, double angle);
+
+// Looks for sharp edges of `repaired`.
+void look_for_features(Source& source, const RemeshOptions& options);
 
 // Throws Error{InvalidInput} where strict mode refuses repairs.
 Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);

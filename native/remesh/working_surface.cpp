@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "layout/base/base_domain.h"
 #include "layout/base/closed_components.h"
 #include "parameterization/patched_surface.h"
 #include "surface/edit_mesh.h"
@@ -132,7 +133,10 @@ bool quarter_small_components(WorkingSurface& surface, const TriangleSurface& pl
   }
 }
 
-// Barycentrics of the point of the triangle's plane next to p, moved onto the triangle.
+double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
+
+}  // namespace
+
 Weights weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   Weights w{0, 0, 0};
@@ -145,10 +149,6 @@ Weights weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners) {
   for (double& x : w) x /= sum;
   return w;
 }
-
-double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
-
-}  // namespace
 
 std::int64_t working_faces(double base_quads, std::int64_t vertices) {
   constexpr double faces_a_base_quad = 30;  // at least
@@ -212,6 +212,22 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   if (!w.query) w.query = std::make_shared<const SurfaceDistanceQuery>(placed);
   if (has_boundary || !w.features.empty()) split_chords(w, features ? features->corner_angle : 0);
   return w;
+}
+
+void hold_ends_of_cut(WorkingSurface& surface, const Vec3& normal) {
+  const TriangleSurface& mesh = surface.mesh;
+  const std::vector<char> on = points_on_mirror(mesh, normal);
+  FeatureGraph& features = surface.features;
+  std::vector<int> ends;
+  for (int h = 0; h < static_cast<int>(mesh.opposite.size()); ++h) {
+    if (mesh.opposite[h] >= 0 || (on[mesh.from(h)] && on[mesh.to(h)])) continue;
+    for (const int v : {mesh.from(h), mesh.to(h)})
+      if (on[v]) ends.push_back(v);
+  }
+  if (ends.empty()) return;
+  if (features.empty()) features.edges.assign(mesh.opposite.size(), 0);
+  features.corners.resize(mesh.points.size(), 0);
+  for (const int v : ends) features.corners[v] = 1;
 }
 
 }  // namespace hybrid_mesh

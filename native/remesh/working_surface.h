@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -52,5 +53,11 @@ std::int64_t working_faces(double base_quads, std::int64_t vertices);
 WorkingSurface make_working_surface(const TriangleSurface& repaired, const Placement& placement, std::int64_t faces, const Progress& progress,
                                     const std::vector<char>& held = {}, const std::optional<FeatureOptions>& features = {},
                                     const std::shared_ptr<const SizeField>& quad_sizes = {}, const WorkingSizes& sizes = WorkingSizes());
+
+// Makes corners that stay of the points where the boundary in the plane across `normal` through the origin meets other boundaries.
+void hold_ends_of_cut(WorkingSurface& surface, const Vec3& normal);
+
+// Barycentrics of the point of the triangle's plane next to p, moved onto the triangle.
+std::array<double, 3> weights_in_triangle(const Vec3& p, const std::array<Vec3, 3>& corners);
 
 }  // namespace hybrid_mesh

@@ -211,7 +211,7 @@ void check(const PolygonSoup& soup) {
 
 class DistanceReference::Prepared {
  public:
-  explicit Prepared(const PolygonSoup& soup) : frame(frame_of(soup)), faces(place(soup, frame)), query(faces.points, faces.triangles) {
+  Prepared(const PolygonSoup& soup, const Frame& in) : frame(in), faces(place(soup, frame)), query(faces.points, faces.triangles) {
     if (!faces.boundary.empty()) edges.emplace(faces.points, faces.boundary);
   }
 
@@ -223,7 +223,15 @@ class DistanceReference::Prepared {
 
 DistanceReference::DistanceReference(const PolygonSoup& surface) {
   check(surface);
-  prepared_ = std::make_unique<const Prepared>(surface);
+  prepared_ = std::make_unique<const Prepared>(surface, frame_of(surface));
+}
+
+DistanceReference::DistanceReference(const PolygonSoup& surface, double diagonal) {
+  check(surface);
+  Frame frame = frame_of(surface);
+  frame.scale = diagonal / 2;
+  frame.diagonal = diagonal;
+  prepared_ = std::make_unique<const Prepared>(surface, frame);
 }
 
 DistanceReference::~DistanceReference() = default;

@@ -31,6 +31,8 @@ class DistanceReference {
  public:
   // Throws Error{InvalidInput} if the surface has no area.
   explicit DistanceReference(const PolygonSoup& surface);
+  // Distances are fractions of another diagonal than the surface's own: of a whole that it is a part of.
+  DistanceReference(const PolygonSoup& surface, double diagonal);
   ~DistanceReference();
 
   // The means are of area-weighted samples in both directions; the Hausdorff distances are found by branch and bound (see

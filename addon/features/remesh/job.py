@@ -17,19 +17,29 @@ from ..levels import properties as hierarchy_properties
 from ..topology import properties as topology_properties
 
 
+def _mirror_plane(obj, matrix, symmetry):
+    """The native setting `symmetry` of an object with that matrix for the settings' one; its axes are the object's. Raises meshes.SourceError."""
+    if symmetry == "auto":
+        symmetry = objects.mirrored_axis(obj) or symmetry
+    return arrays.mirror_plane(matrix, "xyz".index(symmetry)) if symmetry in ("x", "y", "z") else symmetry
+
+
 def remesh_task(obj, depsgraph, settings, plan=""):
     """A task that remeshes an object with RemeshSettings, by a plan if there is one, else with the object's loops. An object that cannot be read is a task that fails."""
     try:
         source = meshes.read_source(obj, depsgraph, transfer.collect, density.reader(settings.density))
         plan = plan or topology_properties.plan_of(obj, source)
+        symmetry = _mirror_plane(obj, source.matrix, settings.symmetry)
     except (meshes.SourceError, arrays.MatrixError, loops.LoopError) as error:
         return Task(obj.name, _refusal(error))
-    return source_task(obj.name, source, settings, plan)
+    return source_task(obj.name, source, settings, plan, symmetry)
 
 
-def source_task(name, source, settings, plan=""):
-    """A task that remeshes a meshes.Source, which was read of the object of that name."""
+def source_task(name, source, settings, plan="", symmetry=None):
+    """A task that remeshes a meshes.Source, which was read of the object of that name. symmetry: the native setting, in world space; None: the settings'."""
     module, values = native(), settings.native()
+    if symmetry is not None:
+        values["symmetry"] = symmetry
     if plan:
         values["plan"] = plan
     return Task(name, lambda: module.start_remesh(*source.mesh, values, source.density), (source, settings))

@@ -40,6 +40,19 @@ FEATURES = (
     ("ANGLE", "From Angle", "All edges are kept at which the surface turns by a given angle or more"),
 )
 
+SYMMETRIES = (
+    ("NONE", "None", "The mesh follows the surface on both sides"),
+    ("AUTO", "Automatic", "In the plane of the object's Mirror modifier if it has one, else in a plane in which the surface is nearly symmetric, if there is one"),
+    ("X", "X", "Across the object's X axis, through its origin"),
+    ("Y", "Y", "Across the object's Y axis, through its origin"),
+    ("Z", "Z", "Across the object's Z axis, through its origin"),
+)
+SYMMETRY_SIDES = (
+    ("POSITIVE", "Positive", "The surface on the positive side is mirrored"),
+    ("NEGATIVE", "Negative", "The surface on the negative side is mirrored"),
+    ("AVERAGE", "Average", "The mean of both sides is"),
+)
+
 # Blender's whole numbers have 32 bits.
 _LARGEST_WHOLE_NUMBER = 2**31 - 1
 
@@ -99,6 +112,8 @@ class RemeshProperties:
         name="Angle", description="Angle between the normals of two faces from which on the edge between them is sharp", subtype="ANGLE",
         default=math.radians(40), min=math.radians(limits().least_feature_angle), max=math.radians(limits().most_feature_angle),
     )  # fmt: skip
+    symmetry: EnumProperty(name="Symmetry", description="Whether the mesh is its own mirror image, vertex by vertex", items=SYMMETRIES, default="NONE")
+    symmetry_side: EnumProperty(name="Side", description="What is mirrored", items=SYMMETRY_SIDES, default="POSITIVE")
     stretch: FloatProperty(
         name="Stretch", description="Grow skin where the map is stretched more than this", default=4, min=limits().least_stretch_threshold,
         max=limits().most_stretch_threshold, soft_max=20,
@@ -141,6 +156,8 @@ def core_settings(properties):
         topology=properties.topology.lower(),
         components=properties.components.lower(),
         features=_degrees(properties.feature_angle) if properties.features == "ANGLE" else properties.features.lower(),
+        symmetry=properties.symmetry.lower(),
+        symmetry_side=properties.symmetry_side.lower(),
         remove_noise=properties.remove_noise,
         stretch_threshold=properties.stretch,
         semi_regular=properties.semi_regular,
@@ -168,6 +185,8 @@ def apply_settings(properties, settings):
     properties.features = "ANGLE" if angle else settings.features.upper()
     if angle:
         properties.feature_angle = math.radians(settings.features)
+    properties.symmetry = settings.symmetry.upper()
+    properties.symmetry_side = settings.symmetry_side.upper()
     properties.remove_noise = settings.remove_noise
     properties.stretch = settings.stretch_threshold
     properties.semi_regular = settings.semi_regular
@@ -203,6 +222,9 @@ def draw_advanced(layout, properties):
     column.prop(properties, "features")
     if properties.features == "ANGLE":
         column.prop(properties, "feature_angle")
+    column.prop(properties, "symmetry")
+    if properties.symmetry != "NONE":
+        column.prop(properties, "symmetry_side")
     column.prop(properties, "stretch")
     column.prop(properties, "semi_regular")
     column.prop(properties, "drop_components")

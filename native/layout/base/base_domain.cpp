@@ -105,6 +105,15 @@ class CoarseSurface {
 
 }  // namespace
 
+std::vector<char> points_on_mirror(const TriangleSurface& surface, const Vec3& normal) {
+  std::vector<char> on(surface.points.size(), 0);
+  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h) {
+    const int a = surface.from(h), b = surface.to(h);
+    if (surface.opposite[h] < 0 && is_in_mirror(surface.points[a], normal) && is_in_mirror(surface.points[b], normal)) on[a] = on[b] = 1;
+  }
+  return on;
+}
+
 BaseDomain::BaseDomain(const TriangleSurface& surface, const FeatureGraph& features, const BaseDomainOptions& options, const Progress& progress)
     : surface_(surface) {
   if (!features.empty()) {
@@ -114,6 +123,7 @@ BaseDomain::BaseDomain(const TriangleSurface& surface, const FeatureGraph& featu
     graph.edges = features.edges;
     features_ = MeshFeatures(surface, graph, mesh);
   }
+  if (options.mirror) on_mirror_ = points_on_mirror(surface, *options.mirror);
   // Times the size, how many faces quads are chosen from: room for their clean-up, which merges some of them. Between features, whose vertices stay,
   // more of them make better corners, but not where there is no room for as many.
   const std::vector<double> ways = features.empty() ? std::vector<double>{2.6} : std::vector<double>{5, 3.9, 3.1};
@@ -138,6 +148,7 @@ BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOption
   decimation.curve_edge = std::sqrt(measured_area(surface_) / std::max(1.0, options.size));
   decimation.seed = options.seed;
   decimation.features = &curves_;
+  decimation.on_mirror = on_mirror_;
   std::vector<VertexQuadric> quadrics = decimate(made.mesh, surface_.points, decimation, made.log, progress.part(0, 0.8));
   QuadLayoutOptions layout_options;
   layout_options.size = options.size;
@@ -146,14 +157,22 @@ BaseDomain::Decimated BaseDomain::decimated(double faces, const BaseDomainOption
   layout_options.seed = options.seed;
   layout_options.features = &curves_;
   layout_options.fineness = decimation.fineness;
+  layout_options.on_mirror = on_mirror_;
   made.layout = make_quad_layout(made.mesh, surface_.points, std::move(quadrics), layout_options, made.log, progress.part(0.8, 1));
   return made;
 }
 
 int BaseDomain::boundary_sides() const {
+  const QuadLayout& layout = decimated_.layout;
+  // A node between the two ends of a boundary edge is where they are.
+  const auto is_on_mirror = [&](const QuadLayout::Quad& q, int i) {
+    const int v = layout.node_vertex[q.nodes[i]];
+    return v >= 0 ? on_mirror_[v] != 0 : on_mirror_[layout.node_vertex[q.nodes[(i + 1) % 4]]] && on_mirror_[layout.node_vertex[q.nodes[(i + 3) % 4]]];
+  };
   int sides = 0;
-  for (const QuadLayout::Quad& q : decimated_.layout.quads)
-    for (const QuadLayout::Side& side : q.sides) sides += side.curve < 0;
+  for (const QuadLayout::Quad& q : layout.quads)
+    for (int i = 0; i < 4; ++i)
+      if (q.sides[i].curve < 0 && (on_mirror_.empty() || !is_on_mirror(q, i) || !is_on_mirror(q, (i + 1) % 4))) ++sides;
   return sides;
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/context.h"
+#include "base/tolerances.h"
 #include "layout/base/decimation.h"
 #include "layout/base/mesh_features.h"
 #include "layout/base/quad_layout.h"
@@ -17,7 +20,15 @@ struct BaseDomainOptions {
   double boundary_side = 0;
   int least = 0;  // coarsening stops before there are fewer quads
   std::uint64_t seed = 1;
+  // The surface is half of one, to be joined with its mirror image along those of its boundaries that are in the plane across this normal through the
+  // origin. No side but those there joins two nodes there, and they count as no sides on the boundary.
+  std::optional<Vec3> mirror;
 };
+
+// Per point of a surface: it is on a boundary along which the surface is to be joined with its mirror image.
+std::vector<char> points_on_mirror(const TriangleSurface& surface, const Vec3& normal);
+// Whether a point of a surface of unit size is in the plane.
+inline bool is_in_mirror(const Vec3& p, const Vec3& normal) { return std::abs(normal.dot(p)) < tolerance::same_place; }
 
 // A surface, or a coarser version of it, cut into the patches of a base domain.
 struct CutSurface {
@@ -37,7 +48,7 @@ class BaseDomain {
   BaseDomain(const TriangleSurface& surface, const FeatureGraph& features, const BaseDomainOptions& options, const Progress& progress);
 
   int quads() const { return static_cast<int>(decimated_.layout.quads.size()); }
-  int boundary_sides() const;
+  int boundary_sides() const;  // but those on the mirror
   bool has_features() const { return !features_.empty(); }
   // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts
   // it along them.
@@ -54,6 +65,7 @@ class BaseDomain {
   const TriangleSurface& surface_;
   MeshFeatures curves_;    // features, and where there are some the boundary too
   MeshFeatures features_;  // with the corners of both
+  std::vector<char> on_mirror_;  // see DecimationOptions
   Decimated decimated_;
 };
 

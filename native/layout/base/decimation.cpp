@@ -159,7 +159,7 @@ class Decimation {
     int best = -1;
     for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
       if (!mesh_.alive[h / 3] || !features().on(mesh_, h) || features().curves()[mesh_.edge[h]] != curve) continue;
-      if (!features().can_collapse(mesh_, h) || !mesh_.can_collapse(h)) continue;
+      if (!features().can_collapse(mesh_, h) || !mesh_.can_collapse(h) || makes_bridge(h, star_.around)) continue;
       gather(mesh_.from(h), star_);
       for (std::size_t i = 0; i < star_.spokes.size(); ++i)
         if (star_.spokes[i].half_edge == h) {
@@ -323,7 +323,9 @@ class Decimation {
       if (!keeps_curves(h)) continue;
       const double cost = full_cost(bound, v, star, i);
       // The topological test is dearer than the cost.
-      if (!(cost < best.cost || (cost == best.cost && h < best.half_edge)) || !mesh_.can_collapse(h) || makes_chord(h, star.around)) continue;
+      if (!(cost < best.cost || (cost == best.cost && h < best.half_edge)) || !mesh_.can_collapse(h) || makes_chord(h, star.around) ||
+          makes_bridge(h, star.around))
+        continue;
       best.cost = cost;
       best.half_edge = h;
     }
@@ -341,6 +343,16 @@ class Decimation {
     mesh_.ring(v, around);
     return std::any_of(around.begin(), around.end(),
                        [&](int w) { return loop_[w] == loop_[u] && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
+  }
+
+  bool is_on_mirror(int v) const { return !options_.on_mirror.empty() && options_.on_mirror[v]; }
+  // Would an edge join two vertices of the mirror that is not on it?
+  bool makes_bridge(int h, std::vector<int>& around) const {
+    const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
+    if (is_on_mirror(v) || !is_on_mirror(u)) return false;
+    mesh_.ring(v, around);
+    return std::any_of(around.begin(), around.end(),
+                       [&](int w) { return is_on_mirror(w) && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
   }
 
   // What changes around a vertex makes its cost in the heap a stale one, which is found out only when it comes to the top: of the seven vertices
@@ -397,7 +409,7 @@ class Decimation {
   }
 
   void collapse(int h) {
-    if (mesh_.can_collapse(h) && keeps_curves(h) && !makes_chord(h, star_.around)) apply(h);
+    if (mesh_.can_collapse(h) && keeps_curves(h) && !makes_chord(h, star_.around) && !makes_bridge(h, star_.around)) apply(h);
   }
   void apply(int h) {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
@@ -457,6 +469,7 @@ class Decimation {
       int count = 0;
       for (const int h : halves) {
         if (mesh_.opposite[h] < h) continue;
+        if (is_on_mirror(mesh_.apex(h)) && is_on_mirror(mesh_.apex(mesh_.opposite[h]))) continue;
         if (!features().can_flip(mesh_, h) || flip_gain(h) <= 0.05 || !mesh_.can_flip(h)) continue;
         --valences_[mesh_.from(h)], --valences_[mesh_.to(h)];
         ++valences_[mesh_.apex(h)], ++valences_[mesh_.apex(mesh_.opposite[h])];

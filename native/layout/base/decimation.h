@@ -27,6 +27,9 @@ struct DecimationOptions {
   const MeshFeatures* features = nullptr;  // curves that stay; the faces between them stay even in number where they can be paired
   double curve_edge = 0;                   // how long the edges of curves are to be
   std::vector<double> fineness;            // per vertex, by how much lengths count more there; empty: the same everywhere
+  // Per vertex: it is on a boundary along which the surface is to be joined with its mirror image. No edge but the boundary's joins two of them, or
+  // there would be two edges between the same vertices. Empty: none is.
+  std::vector<char> on_mirror;
 };
 
 // Collapses and flips `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are

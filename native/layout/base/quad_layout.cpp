@@ -22,13 +22,14 @@ constexpr double kAcross = 1000;
 constexpr double kLacking = 100;   // what it costs that a node on a feature gets a straight corner: more than any distance or shape
 constexpr double kAlone = 10;      // what it costs that a triangle stays alone on the boundary ...
 constexpr double kStraight = 100;  // ... and where the boundary is one of the curves, along which the corner that it gets is straight
-constexpr double kStuck = 100;     // times that, where the edge between them cannot be collapsed
+constexpr double kSplitMirror = 500;  // what it costs that a triangle has no mate but its mirror image
+constexpr double kStuck = 100;        // times that, where the edge between them cannot be collapsed
 
 class QuadCoarsening : private QuadPairs {
  public:
   QuadCoarsening(EditMesh& mesh, const std::vector<Vec3>& points, std::vector<VertexQuadric> quadrics, const QuadLayoutOptions& options,
                  std::vector<MeshEdit>& log)
-      : QuadPairs(mesh, points, options.features, options.boundary_quads),
+      : QuadPairs(mesh, points, options.features, options.boundary_quads, options.on_mirror),
         quadrics_(std::move(quadrics)),
         options_(options),
         log_(log),
@@ -38,6 +39,7 @@ class QuadCoarsening : private QuadPairs {
   QuadLayout run(const Progress& progress) {
     list_live();
     pair_within_features();
+    collapse_splits_on_mirror();
     double area = 0;
     for (const int v : vertices_) area += quadrics_[v].area * finer(v) * finer(v);
     side_ = std::sqrt(area / std::max(1.0, options_.size));
@@ -124,7 +126,8 @@ class QuadCoarsening : private QuadPairs {
   double size() const {
     int sides = 0;
     for (const int f : faces_)
-      for (int h = 3 * f; h < 3 * f + 3; ++h) sides += mesh_.opposite[h] < 0 ? (split_[f] == h ? 2 : 1) : 0;
+      for (int h = 3 * f; h < 3 * f + 3; ++h)
+        if (mesh_.opposite[h] < 0 && !(is_on_mirror(mesh_.from(h)) && is_on_mirror(mesh_.to(h)))) sides += split_[f] == h ? 2 : 1;
     return quad_count() + options_.boundary_side * sides;
   }
   void pair_within_features() {
@@ -135,6 +138,17 @@ class QuadCoarsening : private QuadPairs {
       if (!collapse_pairs_across()) return;
     }
     throw NoMap("the triangles between sharp edges cannot be paired");
+  }
+
+  // A node between the two ends of a mirror's edge would have a quad alone. Its triangle goes instead, with that edge.
+  void collapse_splits_on_mirror() {
+    for (const int f : std::vector<int>(faces_)) {
+      if (!mesh_.alive[f] || is_pair(f)) continue;
+      const int h = split_[f];
+      if (!is_on_mirror(mesh_.from(h)) || !is_on_mirror(mesh_.to(h)) || !is_inside_mirror(mesh_.from(h))) continue;
+      if (can_collapse_on_feature(h)) collapse(h);
+    }
+    drop_dead();
   }
 
   void pair() {
@@ -148,7 +162,8 @@ class QuadCoarsening : private QuadPairs {
         if (o >= 0 && o < h) continue;
         if (o < 0) {
           if (!options_.boundary_quads.empty()) continue;
-          candidates.push_back({index[f], -1, features_.on(mesh_, h) ? -kStraight : -kAlone});
+          const bool is_mirror = is_on_mirror(mesh_.from(h)) && is_on_mirror(mesh_.to(h));
+          candidates.push_back({index[f], -1, is_mirror ? -kSplitMirror : features_.on(mesh_, h) ? -kStraight : -kAlone});
         } else {
           double b = badness({mesh_.from(h), mesh_.apex(o), mesh_.to(h), mesh_.apex(h)});
           b = features_.on(mesh_, h) ? cost_across(h) : b + diagonal_energy(h) + diagonal_energy(o);
@@ -301,6 +316,7 @@ class QuadCoarsening : private QuadPairs {
       const double valence = lost + gained(half_at(g / 3, x), 1) + gained(half_at(o / 3, y), 1);
       const double change = shape - badness(n1) - badness(n2);
       const double gain = valence + 1.5 * change;
+      if (is_on_mirror(x) && is_on_mirror(y)) return;
       if (gain > best.gain + 1e-9) best = {g, left, gain};
     };
     consider(true, e, b, {e, f, a, b}, {b, c, d, e});
@@ -342,6 +358,7 @@ class QuadCoarsening : private QuadPairs {
       if (!is_diagonal(h)) {
         std::array<int, 4> q = corners(h).v;
         if (!is_pair(h / 3)) return 1e300;
+        if (const int w = mesh_.to(h); is_on_mirror(to) && is_on_mirror(w) && w != x && w != y) return 1e300;
         if (std::find(q.begin(), q.end(), to) == q.end()) {
           const double before = badness(q);
           std::replace(q.begin(), q.end(), from, to);
@@ -359,7 +376,7 @@ class QuadCoarsening : private QuadPairs {
     if (!features_.is_on_curve(to) && excess(to) + added > 3) return 1e300;
     // The last resort.
     double lacking = 0;
-    for (const int v : {x, y}) lacking += features_.is_on_curve(v) && lacks_quads(half_at(face, v), 1);
+    for (const int v : {x, y}) lacking += (features_.is_on_curve(v) || is_inside_mirror(v)) && lacks_quads(half_at(face, v), 1);
     const auto change = [&](int v, int by) { return sector_energy(half_at(face, v), by) - sector_energy(half_at(face, v), 0); };
     const double valence = change(to, added) + change(x, -1) + change(y, -1) - valence_energy(excess(from));
     const double side = side_ / (0.5 * (finer(from) + finer(to))), scale = side * side;

@@ -38,6 +38,7 @@ struct QuadLayoutOptions {
                                     // nodes may be added between
   std::vector<double> fineness;     // as in DecimationOptions
   const MeshFeatures* features = nullptr;  // curves that stay as they are: quads lie between them
+  std::vector<char> on_mirror;             // see DecimationOptions; sides there do not count as the boundary's
 };
 
 // Pairs the triangles of a decimated mesh to quads and cleans their connectivity up (doublets removed, edges rotated, diagonals collapsed) until the

@@ -8,6 +8,8 @@
 namespace hybrid_mesh {
 namespace {
 
+constexpr int kOnBoundary = 2;  // quads that a node there is to have
+
 double energy_of(int quads, int regular) {
   // One quad alone would have a straight angle for a corner.
   constexpr double straight = 10;
@@ -65,6 +67,7 @@ int QuadPairs::excess(int v) const {
 
 double QuadPairs::sector_energy(int h, int change) const {
   const int v = mesh_.from(h);
+  if (is_inside_mirror(v) && !features_.is_on_curve(v)) return energy_of(excess(v) + kOnBoundary + change, kOnBoundary);
   if (!features_.is_on_curve(v)) return valence_energy(excess(v) + change);
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
   return energy_of(quads_in(sector) + change, regular_quads(sector));
@@ -79,11 +82,16 @@ int QuadPairs::quads_in(const MeshFeatures::Sector& sector) const {
 int QuadPairs::regular_quads(const MeshFeatures::Sector& sector) const { return features_.regular_quads(mesh_, points_, sector); }
 
 bool QuadPairs::lacks_quads(int h, int fewer) const {
+  if (is_inside_mirror(mesh_.from(h)) && !features_.is_on_curve(mesh_.from(h))) return excess(mesh_.from(h)) < fewer;
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
   return quads_in(sector) - fewer < regular_quads(sector);
 }
 
 double QuadPairs::diagonal_energy(int h) const {
+  if (is_inside_mirror(mesh_.from(h)) && !features_.is_on_curve(mesh_.from(h))) {
+    const int all = mesh_.valence(mesh_.from(h)) - 1;  // triangles
+    return std::max(0.0, energy_of(all - 1, kOnBoundary) - energy_of(all, kOnBoundary));
+  }
   if (!features_.is_on_curve(mesh_.from(h))) return 0;
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
   const int triangles = MeshFeatures::sector_triangles(mesh_, sector), regular = regular_quads(sector);

@@ -33,13 +33,17 @@ class QuadPairs {
   double sector_energy(int h, int change) const;
   // Would the sector with so many quads fewer have fewer than it should?
   bool lacks_quads(int h, int fewer) const;
+  bool is_on_mirror(int v) const { return !on_mirror_.empty() && on_mirror_[v]; }
+  // On the mirror, and no end of it: with its mirror image a quad alone there would have two sides in common.
+  bool is_inside_mirror(int v) const { return is_on_mirror(v) && !features_.is_corner(v); }
   // What it costs that a pair's diagonal goes to from(h).
   double diagonal_energy(int h) const;
 
  protected:
-  // `features`: none if null; `boundary_quads`: see QuadLayoutOptions. References are kept.
-  QuadPairs(EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures* features, const std::vector<int>& boundary_quads)
-      : mesh_(mesh), points_(points), features_(features ? *features : none_), boundary_quads_(boundary_quads) {}
+  // `features`: none if null; `boundary_quads`, `on_mirror`: see QuadLayoutOptions. References are kept.
+  QuadPairs(EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures* features, const std::vector<int>& boundary_quads,
+            const std::vector<char>& on_mirror)
+      : mesh_(mesh), points_(points), features_(features ? *features : none_), boundary_quads_(boundary_quads), on_mirror_(on_mirror) {}
 
   EditMesh& mesh_;
   const std::vector<Vec3>& points_;
@@ -53,6 +57,7 @@ class QuadPairs {
   int regular_quads(const MeshFeatures::Sector& sector) const;
 
   const std::vector<int>& boundary_quads_;
+  const std::vector<char>& on_mirror_;
 };
 
 }  // namespace hybrid_mesh
