@@ -110,7 +110,12 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
     c.waited = std::move(late.waited);
     return c;
   };
-  Candidate c = made_with(most_quads_to_open(options, budget.vertices), true);
+  const std::int64_t most = most_quads_to_open(options, budget.vertices);
+  Found<Candidate> with_skin = found([&] { return made_with(most, true); });
+  // Beside its mirror image a half cannot have every operation.
+  if (!with_skin && !(task.source.mirror && !options.semi_regular)) throw NoMap(with_skin.reason);
+  Candidate c = with_skin ? std::move(*with_skin) : made_with(most, false);
+  c.lost_operations = with_skin.reason;
   if (options.refinement == Refinement::Uniform) return c;
   // Of a level as fine as the last one that something opens on, or grows skin on, it may be too much.
   for (const bool skin : {true, false})

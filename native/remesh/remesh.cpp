@@ -191,7 +191,7 @@ Found<Candidate> symmetric_remesh(const RemeshOptions& options, Source& source, 
   // Operations that do not go together with their mirror images are done without.
   for (;;) {
     const Candidate made = searched_remesh(of_half, *half, {}, base, progress.part(0.05, 0.9), watch);
-    whole = found([&] { return mirrored_candidate({options, source, base, progress.part(0.9, 0.95), watch}, *half, made); });
+    whole = found([&] { return mirrored_candidate({options, source, base, progress.part(0.9, 0.95), watch}, *half, made, source.symmetry); });
     if (whole) return whole;
     if (of_half.semi_regular) throw Error(ErrorCode::Unsupported, "the half of the mesh cannot be mirrored: " + whole.reason);
     of_half.semi_regular = true;

@@ -169,6 +169,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
                      {"self_intersections_of_input", finished.intersections.pairs_of_input}};
   if (task.options.error > 0) report["final"]["error_bound_met"] = d.l2 <= task.options.error;
   if (!task.source.symmetry.is_null()) report["symmetry"] = task.source.symmetry;
+  if (task.source.symmetric) report["symmetry"].update(Json{{"l2", finished.distance.l2}, {"hausdorff", finished.distance.hausdorff}});
   report["verdict"] = describe_verdict(reasons_against(finished), task.source.placement);
   report["warnings"] = warnings(finished);
   return report;

@@ -108,6 +108,7 @@ void check_symmetry(const RemeshOptions& options) {
   const auto refuse = [](const std::string& what) { throw Error(ErrorCode::InvalidInput, what); };
   if (!options.plan.empty()) refuse("a plan and symmetry do not go together: the plan decides both sides");
   if (options.topology == TopologyMode::Late) refuse("late topology and symmetry do not go together; with topology in the base they do");
+  if (!options.density.empty()) refuse("density and symmetry do not go together");
   if (options.components == Components::Joined) refuse("joined components and symmetry do not go together");
   if (options.symmetry == Symmetry::Given &&
       !(options.mirror.normal.allFinite() && std::isfinite(options.mirror.offset) && std::abs(options.mirror.normal.norm() - 1) < 1e-9))
@@ -156,6 +157,7 @@ std::optional<Source> half_source(Source& whole, const RemeshOptions& options, c
   const TriangleSurface joined = joined_with_image(*half.half, *plane);
   half.made = whole.made = summarize_topology(to_soup(joined));
   half.points = whole.points = static_cast<std::int64_t>(joined.points.size());
+  whole.symmetric = std::make_shared<const DistanceReference>(to_soup(whole.placement.to_unit(joined)), 1.0);
   look_for_features(half, options);
   whole.has_features = half.has_features;
   whole.keeps_features = half.keeps_features;
@@ -164,14 +166,16 @@ std::optional<Source> half_source(Source& whole, const RemeshOptions& options, c
   if (made.components != given.components || made.boundary_loops != given.boundary_loops || made.genus != given.genus)
     whole.symmetry["topology"] = {{"components", made.components}, {"boundary_loops", made.boundary_loops}, {"genus", made.genus}};
   whole.symmetry["switched_off"] = Json::array();
-  if (options.base == BaseSize::Minimal && !options.semi_regular && (half.topology.genus > 0 || half.topology.boundary_loops > 0))
+  if (options.base == BaseSize::Minimal && !options.semi_regular && (given.genus > 0 || given.boundary_loops > 0))
     whole.symmetry["switched_off"].push_back("late topology: handles and boundaries are in the base");
   return half;
 }
 
-Candidate mirrored_candidate(const RemeshTask& task, const Source& half, const Candidate& made) {
+Candidate mirrored_candidate(const RemeshTask& task, const Source& half, const Candidate& made, nlohmann::ordered_json& report) {
   const MirrorPlane plane{*half.mirror, 0};
   task.watch.start("mirror");
+  Json& switched_off = report["switched_off"];
+  if (!made.lost_operations.empty()) switched_off.push_back("irregular operations: " + made.lost_operations);
   Mirrored m = mirrored(made.hierarchy);
   HybridMesh& mesh = m.mesh;
   const SymmetricMaps maps(task.source, half);

@@ -19,7 +19,7 @@ std::optional<Source> half_source(Source& whole, const RemeshOptions& options, c
 RemeshOptions options_of_half(const RemeshOptions& options);
 
 // A candidate of the whole made of a finished one of its half: joined with its mirror image, with all levels measured against the whole. `task`: of
-// the whole. Throws NoMap where irregular operations cannot be mirrored.
-Candidate mirrored_candidate(const RemeshTask& task, const Source& half, const Candidate& made);
+// the whole; `report`: its part about symmetry, which is told what was done without. Throws NoMap where irregular operations cannot be mirrored.
+Candidate mirrored_candidate(const RemeshTask& task, const Source& half, const Candidate& made, nlohmann::ordered_json& report);
 
 }  // namespace hybrid_mesh

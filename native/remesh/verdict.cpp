@@ -116,7 +116,9 @@ Finished measured(const RemeshTask& task, const Candidate& candidate, const Prog
   const Source& source = task.source;
   const QuadMesh& mesh = candidate.final_mesh;
   SurfaceDistance distance = candidate.distance;
-  if (source.repairs.dropped_components > 0 || source.removed_handles > 0) {
+  if (source.symmetric) {
+    distance = source.symmetric->distance(to_soup(mesh), DistanceOptions(), progress.part(0, 0.5));
+  } else if (source.repairs.dropped_components > 0 || source.removed_handles > 0) {
     const DistanceReference wanted(to_soup(source.placement.to_unit(source.repaired)));
     distance = wanted.distance(to_soup(mesh), DistanceOptions(), progress.part(0, 0.5));
   }

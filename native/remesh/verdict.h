@@ -24,7 +24,7 @@ struct Finished {
   const Candidate& candidate;
   QuadQuality quality;
   double width = 0;          // see mean_width()
-  SurfaceDistance distance;  // to the input, without what was removed as asked: components and noise
+  SurfaceDistance distance;  // to the input as it was asked for: without components and noise, or made symmetric
   MeshIntersections intersections;
 };
 Finished measured(const RemeshTask& task, const Candidate& candidate, const Progress& progress);

@@ -15,6 +15,7 @@
 #include "base/disjoint_sets.h"
 #include "layout/base/closed_components.h"
 #include "layout/base/curve_classes.h"
+#include "layout/base/jitter.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -32,6 +33,7 @@ struct Candidate {
 bool is_dearer(const Candidate& a, const Candidate& b) { return a.cost != b.cost ? a.cost > b.cost : a.vertex > b.vertex; }
 
 constexpr double kMuchLonger = 1.65;    // times the edges that curves are to have, from where on their length decides
+constexpr int kLeastOnMirror = 3;       // triangles at its vertices
 constexpr int kLeastOfClosedCurve = 4;  // edges: with fewer the quads beside it have straight corners
 
 // When so many times the faces asked for are left, flips begin.
@@ -39,13 +41,6 @@ constexpr double kFlipFaces = 12;
 // From so many faces on the order of collapses is kept exact, so that the base does not depend on how the queue works; before that single collapses
 // of a fine surface matter little, and exactness would take two thirds of the time.
 constexpr int kExactFaces = 120000;
-
-// A number in [0, 1) that depends on the seed and the vertex alone.
-double jitter(std::uint64_t seed, int v) {
-  std::uint64_t x = seed * 0x9E3779B97F4A7C15ull + static_cast<std::uint64_t>(v) * 0xBF58476D1CE4E5B9ull;
-  x ^= x >> 31, x *= 0x94D049BB133111EBull, x ^= x >> 29;
-  return static_cast<double>(x >> 11) * 0x1.0p-53;
-}
 
 class Decimation {
  public:
@@ -57,7 +52,7 @@ class Decimation {
     queued_.assign(points.size(), Queued::No);
     stamps_.assign(points.size(), 0);
     for (std::size_t f = 0; f < mesh.alive.size(); ++f)
-      if (mesh.alive[f]) add_face(static_cast<int>(f));
+      if (mesh.alive[f]) add_face(mesh, points, static_cast<int>(f), quadrics_);
     for (std::size_t v = 0; v < points.size(); ++v)
       if (mesh.vertex_alive(static_cast<int>(v))) {
         valences_[v] = mesh.valence(static_cast<int>(v));
@@ -90,6 +85,7 @@ class Decimation {
     }
     if (!features().empty()) balance_curves();
     flips();
+    dress_mirror();
     progress(1);
   }
 
@@ -179,35 +175,6 @@ class Decimation {
     if (!features().is_on_curve(mesh_.from(h))) return true;
     const int curve = features().curves()[mesh_.edge[h]];
     return on_curve_[curve] > (closed_[curve] ? 3 : 0) + 1;
-  }
-
-  void add_face(int f) {
-    const int h = 3 * f;
-    const Vec3 &a = points_[mesh_.from(h)], &b = points_[mesh_.to(h)], &c = points_[mesh_.apex(h)];
-    const Vec3 n = (b - a).cross(c - a);
-    const double length = n.norm();
-    if (length > 0) {
-      Quadric q;
-      const Vec3 unit = n / length;
-      q.add_plane(unit, -unit.dot(a), length / 6);
-      for (int i = 0; i < 3; ++i) {
-        quadrics_[mesh_.from(h + i)].planes += q;
-        quadrics_[mesh_.from(h + i)].area += length / 6;
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      if (mesh_.opposite[h + i] >= 0) continue;
-      // The boundary curve is held by planes along it, upright on the face.
-      const Vec3 e = points_[mesh_.to(h + i)] - points_[mesh_.from(h + i)];
-      Vec3 side = length > 0 ? e.cross(n / length) : Vec3::Zero();
-      const double l = side.norm();
-      if (l == 0) continue;
-      side /= l;
-      Quadric q;
-      q.add_plane(side, -side.dot(points_[mesh_.from(h + i)]), e.squaredNorm());
-      quadrics_[mesh_.from(h + i)].planes += q;
-      quadrics_[mesh_.to(h + i)].planes += q;
-    }
   }
 
   // What the costs of all collapses that take one vertex away have in common.
@@ -324,7 +291,7 @@ class Decimation {
       const double cost = full_cost(bound, v, star, i);
       // The topological test is dearer than the cost.
       if (!(cost < best.cost || (cost == best.cost && h < best.half_edge)) || !mesh_.can_collapse(h) || makes_chord(h, star.around) ||
-          makes_bridge(h, star.around))
+          makes_bridge(h, star.around) || bares_mirror(h))
         continue;
       best.cost = cost;
       best.half_edge = h;
@@ -353,6 +320,37 @@ class Decimation {
     mesh_.ring(v, around);
     return std::any_of(around.begin(), around.end(),
                        [&](int w) { return is_on_mirror(w) && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
+  }
+
+  bool is_inside_mirror(int v) const { return is_on_mirror(v) && !features().is_corner(v); }
+  // Would a vertex of the mirror get so few triangles that they might become one quad, which would have two sides in common with its mirror image?
+  // Only where the base takes shape: a cut leaves many of them.
+  bool is_bare(int v, int triangles) const { return is_inside_mirror(v) && triangles < kLeastOnMirror; }
+  bool bares_mirror(int h) const {
+    if (options_.on_mirror.empty() || mesh_.face_count > kFlipFaces * options_.target_faces) return false;
+    const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h], apex = mesh_.apex(h);
+    if (is_bare(apex, valences_[apex] - 2)) return true;
+    if (o >= 0) return is_bare(mesh_.apex(o), valences_[mesh_.apex(o)] - 2);
+    return is_bare(u, valences_[u] + valences_[v] - 4);
+  }
+  // Gives a third triangle to vertices of the mirror that have fewer, or takes them away.
+  void dress_mirror() {
+    for (int v = 0; v < static_cast<int>(options_.on_mirror.size()); ++v) {
+      if (!mesh_.vertex_alive(v) || !is_bare(v, valences_[v] - 1) || dress(v)) continue;
+      const int h = mesh_.out[v];
+      if (mesh_.can_collapse(h) && keeps_curves(h) && !bares_mirror(h)) apply(h);
+    }
+  }
+  bool dress(int v) {
+    for (int h = mesh_.out[v]; h >= 0; h = mesh_.ccw(h)) {
+      const int g = EditMesh::next(h), o = mesh_.opposite[g];  // across from v
+      if (o < 0 || !features().can_flip(mesh_, g) || !mesh_.can_flip(g) || is_on_mirror(mesh_.apex(o))) continue;
+      if (is_bare(mesh_.from(g), valences_[mesh_.from(g)] - 2) || is_bare(mesh_.to(g), valences_[mesh_.to(g)] - 2)) continue;
+      flip(g);
+      if (!is_bare(v, valences_[v] - 1)) return true;
+      h = mesh_.out[v];
+    }
+    return false;
   }
 
   // What changes around a vertex makes its cost in the heap a stale one, which is found out only when it comes to the top: of the seven vertices
@@ -409,7 +407,7 @@ class Decimation {
   }
 
   void collapse(int h) {
-    if (mesh_.can_collapse(h) && keeps_curves(h) && !makes_chord(h, star_.around) && !makes_bridge(h, star_.around)) apply(h);
+    if (mesh_.can_collapse(h) && keeps_curves(h) && !makes_chord(h, star_.around) && !makes_bridge(h, star_.around) && !bares_mirror(h)) apply(h);
   }
   void apply(int h) {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
@@ -460,6 +458,13 @@ class Decimation {
     return 0.15 * valence + 0.5 * delaunay + 2 * dihedral;
   }
 
+  void flip(int h) {
+    --valences_[mesh_.from(h)], --valences_[mesh_.to(h)];
+    ++valences_[mesh_.apex(h)], ++valences_[mesh_.apex(mesh_.opposite[h])];
+    mesh_.flip(h);
+    log_.push_back({MeshEdit::Kind::Flip, h});
+  }
+
   void flips() {
     flipped_ = true;
     std::vector<int> halves;
@@ -470,11 +475,9 @@ class Decimation {
       for (const int h : halves) {
         if (mesh_.opposite[h] < h) continue;
         if (is_on_mirror(mesh_.apex(h)) && is_on_mirror(mesh_.apex(mesh_.opposite[h]))) continue;
+        if (is_bare(mesh_.from(h), valences_[mesh_.from(h)] - 2) || is_bare(mesh_.to(h), valences_[mesh_.to(h)] - 2)) continue;
         if (!features().can_flip(mesh_, h) || flip_gain(h) <= 0.05 || !mesh_.can_flip(h)) continue;
-        --valences_[mesh_.from(h)], --valences_[mesh_.to(h)];
-        ++valences_[mesh_.apex(h)], ++valences_[mesh_.apex(mesh_.opposite[h])];
-        mesh_.flip(h);
-        log_.push_back({MeshEdit::Kind::Flip, h});
+        flip(h);
         ++count;
       }
       if (count == 0) return;

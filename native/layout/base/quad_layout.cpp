@@ -57,7 +57,7 @@ class QuadCoarsening : private QuadPairs {
       if (few) restore(before);
     }
     progress(1);
-    return layout();
+    return layout_of(faces_, vertices_);
   }
 
  private:
@@ -262,9 +262,16 @@ class QuadCoarsening : private QuadPairs {
     });
   }
 
+  // Does a vertex keep one of the mirror from having a quad alone?
+  bool keeps_from_straight(int v) {
+    if (options_.on_mirror.empty()) return false;
+    mesh_.ring(v, ring_);
+    return std::any_of(ring_.begin(), ring_.end(), [&](int w) { return is_inside_mirror(w) && excess(w) <= 0 && !is_diagonal(mesh_.find(v, w)); });
+  }
   // An interior vertex between two quads only: the quads become one.
   bool remove_doublet(int v) {
     if (mesh_.is_boundary(v) || features_.is_on_curve(v) || excess(v) != -2) return false;
+    if (keeps_from_straight(v)) return false;
     std::vector<int> faces;
     int h = mesh_.out[v];
     do {
@@ -450,49 +457,6 @@ class QuadCoarsening : private QuadPairs {
       }
       if (!changed) return;
     }
-  }
-
-  // --- result ----------------------------------------------------------------------------------------------------------------
-  QuadLayout layout() const {
-    QuadLayout out;
-    for (const int v : vertices_)
-      if (features_.is_on_curve(v))
-        for (const int h : features_.along(mesh_, v)) out.lacking += lacks_quads(h, 0);
-    std::vector<int> node(points_.size(), -1);
-    for (const int v : vertices_) {
-      node[v] = static_cast<int>(out.node_vertex.size());
-      out.node_vertex.push_back(v);
-    }
-    std::map<int, int> curve_of_edge;
-    const auto side = [&](int h) {
-      QuadLayout::Side s;
-      if (mesh_.opposite[h] < 0) return s;
-      const auto [it, fresh] = curve_of_edge.insert({mesh_.edge[h], static_cast<int>(out.curves.size())});
-      if (fresh) out.curves.push_back({mesh_.from(h), mesh_.to(h), mesh_.edge[h]});
-      s.curve = it->second;
-      s.forward = out.curves[s.curve].start == mesh_.from(h);
-      return s;
-    };
-    for (const int f : faces_) {
-      if (mate_[f] < f) continue;
-      QuadLayout::Quad quad;
-      if (is_pair(f)) {
-        const int d = diagonal(f), o = mesh_.opposite[d];
-        const std::array<int, 4> halves{EditMesh::next(o), EditMesh::prev(o), EditMesh::next(d), EditMesh::prev(d)};
-        for (int k = 0; k < 4; ++k) {
-          quad.nodes[k] = node[mesh_.from(halves[k])];
-          quad.sides[k] = side(halves[k]);
-        }
-      } else {
-        const int h = split_[f];
-        const int extra = static_cast<int>(out.node_vertex.size());
-        out.node_vertex.push_back(-1);
-        quad.nodes = {node[mesh_.from(h)], extra, node[mesh_.to(h)], node[mesh_.apex(h)]};
-        quad.sides = {QuadLayout::Side{}, QuadLayout::Side{}, side(EditMesh::next(h)), side(EditMesh::prev(h))};
-      }
-      out.quads.push_back(quad);
-    }
-    return out;
   }
 
   std::vector<VertexQuadric> quadrics_;

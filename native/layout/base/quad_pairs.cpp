@@ -4,6 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
+
+#include "layout/base/quad_layout.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -96,6 +99,48 @@ double QuadPairs::diagonal_energy(int h) const {
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
   const int triangles = MeshFeatures::sector_triangles(mesh_, sector), regular = regular_quads(sector);
   return std::max(0.0, energy_of(triangles - 1, regular) - energy_of(triangles, regular));
+}
+
+QuadLayout QuadPairs::layout_of(const std::vector<int>& faces, const std::vector<int>& vertices) const {
+  QuadLayout out;
+  for (const int v : vertices)
+    if (features_.is_on_curve(v))
+      for (const int h : features_.along(mesh_, v)) out.lacking += lacks_quads(h, 0);
+  std::vector<int> node(points_.size(), -1);
+  for (const int v : vertices) {
+    node[v] = static_cast<int>(out.node_vertex.size());
+    out.node_vertex.push_back(v);
+  }
+  std::map<int, int> curve_of_edge;
+  const auto side = [&](int h) {
+    QuadLayout::Side s;
+    if (mesh_.opposite[h] < 0) return s;
+    const auto [it, fresh] = curve_of_edge.insert({mesh_.edge[h], static_cast<int>(out.curves.size())});
+    if (fresh) out.curves.push_back({mesh_.from(h), mesh_.to(h), mesh_.edge[h]});
+    s.curve = it->second;
+    s.forward = out.curves[s.curve].start == mesh_.from(h);
+    return s;
+  };
+  for (const int f : faces) {
+    if (mate_[f] < f) continue;
+    QuadLayout::Quad quad;
+    if (is_pair(f)) {
+      const int d = diagonal(f), o = mesh_.opposite[d];
+      const std::array<int, 4> halves{EditMesh::next(o), EditMesh::prev(o), EditMesh::next(d), EditMesh::prev(d)};
+      for (int k = 0; k < 4; ++k) {
+        quad.nodes[k] = node[mesh_.from(halves[k])];
+        quad.sides[k] = side(halves[k]);
+      }
+    } else {
+      const int h = split_[f];
+      const int extra = static_cast<int>(out.node_vertex.size());
+      out.node_vertex.push_back(-1);
+      quad.nodes = {node[mesh_.from(h)], extra, node[mesh_.to(h)], node[mesh_.apex(h)]};
+      quad.sides = {QuadLayout::Side{}, QuadLayout::Side{}, side(EditMesh::next(h)), side(EditMesh::prev(h))};
+    }
+    out.quads.push_back(quad);
+  }
+  return out;
 }
 
 }  // namespace hybrid_mesh

@@ -8,6 +8,8 @@
 
 namespace hybrid_mesh {
 
+struct QuadLayout;
+
 // Quads as pairs of triangles of a mesh, and how many of them meet at its vertices.
 class QuadPairs {
  public:
@@ -44,6 +46,9 @@ class QuadPairs {
   QuadPairs(EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures* features, const std::vector<int>& boundary_quads,
             const std::vector<char>& on_mirror)
       : mesh_(mesh), points_(points), features_(features ? *features : none_), boundary_quads_(boundary_quads), on_mirror_(on_mirror) {}
+
+  // The quads of these faces and vertices, which are all that are alive.
+  QuadLayout layout_of(const std::vector<int>& faces, const std::vector<int>& vertices) const;
 
   EditMesh& mesh_;
   const std::vector<Vec3>& points_;

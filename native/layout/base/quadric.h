@@ -3,8 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
-#include "surface/triangle_surface.h"
+#include "surface/edit_mesh.h"
 
 namespace hybrid_mesh {
 
@@ -34,5 +35,8 @@ struct VertexQuadric {
   Quadric planes;
   double area = 0;
 };
+
+// Adds a face's plane and its part of the area to what its corners stand for, and for its boundary sides planes upright on it.
+void add_face(const EditMesh& mesh, const std::vector<Vec3>& points, int f, std::vector<VertexQuadric>& quadrics);
 
 }  // namespace hybrid_mesh
