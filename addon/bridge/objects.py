@@ -43,7 +43,6 @@ def diagonal(obj):
     return float(numpy.linalg.norm(numpy.ptp(corners, axis=0)))
 
 
-@contextlib.contextmanager
 def mirrored_axis(obj):
     """The axis ("x", "y" or "z") in which a Mirror modifier mirrors the object about its own origin; "" if none does, or they mirror in several ways."""
     mirrors = [modifier for modifier in obj.modifiers if modifier.type == "MIRROR" and modifier.show_viewport]
@@ -52,6 +51,7 @@ def mirrored_axis(obj):
     return "xyz"[list(mirrors[0].use_axis).index(True)]
 
 
+@contextlib.contextmanager
 def evaluated(context, obj):
     """Gives a dependency graph in which the object has its modifiers applied, also where it is switched off in the viewports or its collections are."""
     view_layer = context.view_layer

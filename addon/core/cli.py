@@ -197,6 +197,7 @@ def _parser():
         "says how small quads are: edges are 4^(1 - 2 v) times as long where its value is v, a quarter at 1, as without at 0.5, four times at 0; as many vertices "
         "in all; adaptive: errors count more where it is high",
     )  # fmt: skip
+    shape.add_argument(
         "--symmetry", type=_symmetry, default="none", metavar="auto|x|y|z|none|NX,NY,NZ,D",
         help="a mesh that is its own mirror image: in the plane where x (y, z) is 0, in the plane with that normal and offset, or in one that is found (auto)",
     )  # fmt: skip

@@ -27,6 +27,21 @@ def test_tiny_and_huge_scales_are_not_flat():
         assert numpy.allclose(points, back, rtol=1e-12)
 
 
+def test_the_mirror_plane_of_an_axis_is_that_of_the_objects_space():
+    assert arrays.mirror_plane(numpy.eye(4), 1) == (0, 1, 0, 0)
+    matrix = numpy.eye(4)
+    turn = numpy.linalg.qr(numpy.random.default_rng(1).random((3, 3)))[0]
+    matrix[:3, :3], matrix[:3, 3] = turn * [2, -0.5, 3], (1, 2, 3)
+    points = numpy.random.default_rng(2).random((5, 3))
+    for axis in range(3):
+        *normal, offset = arrays.mirror_plane(matrix, axis)
+        heights = arrays.transformed(points, matrix) @ normal - offset
+        assert numpy.allclose(arrays.transformed(points, matrix) - 2 * heights[:, None] * normal, arrays.transformed(points * numpy.where(numpy.arange(3) == axis, -1, 1), matrix))
+    matrix[0, 1] += 1
+    with pytest.raises(arrays.MatrixError, match="sheared"):
+        arrays.mirror_plane(matrix, 0)
+
+
 def test_closest_weights_find_a_point_again():
     random = numpy.random.default_rng(2)
     triangles, weights = random.random((20, 3, 3)), random.dirichlet((1, 1, 1), 20)

@@ -66,6 +66,16 @@ def test_topology_is_a_setting(command_line, option, values):
         assert report(command_line, "box")["settings"].get(option, values[0]) == value
 
 
+@pytest.mark.parametrize("value, reported", [("auto", "auto"), ("x", "x"), ("z", "z"), ("1,0,0,2.5", [1, 0, 0, 2.5]), ("none", None)])
+def test_symmetry_is_a_setting(command_line, value, reported):
+    command = ("remesh", command_line.box("box.obj"), "--output", "out", "--symmetry", value, "--symmetry-side", "average")
+    assert command_line.run(*command).returncode == 0
+    settings = report(command_line, "box")["settings"]
+    assert settings.get("symmetry") == reported and settings.get("symmetry_side") == (reported and "average")
+    assert "skipped" in command_line.run(*command, "--resume").out
+    assert ("skipped" in command_line.run("remesh", "box.obj", "--output", "out", "--resume").out) == (value == "none")
+
+
 @pytest.mark.parametrize("options, value", [((), "auto"), (("auto",), "auto"), (("none",), "none"), (("40",), 40), (("32.5",), 32.5)])
 def test_sharp_edges_are_a_setting(command_line, options, value):
     chosen = ("--features", *options) if options else ()

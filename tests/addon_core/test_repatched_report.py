@@ -30,6 +30,11 @@ def test_what_was_not_measured_again_is_not_told():
     assert reports.quality(made)["scaled_jacobian_min"] is None and len(reports.level_table(made)) == 4
 
 
+def test_one_side_alone_is_not_symmetric():
+    made = reports.repatched({**REPORT, "symmetry": {"plane": [1, 0, 0, 0]}}, OPERATION, {"energy_before": 2.0, "energy_after": 1.0, "levels": COUNTS}, 0)
+    assert "symmetry" not in made and "no longer symmetric" in made["warnings"][0]
+
+
 def test_a_region_that_is_no_better_and_a_bound_that_is_passed_are_said():
     assert "no better" in repatched(before=1.0, after=1.0)["warnings"][0]
     assert repatched(bound=114)["warnings"] == []
