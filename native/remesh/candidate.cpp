@@ -204,16 +204,26 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
 
 namespace {
 
-// Where nothing is mended, see make_working_surface(): around the ends of a half's cut, too, which are to stay where they are.
-std::vector<char> held_faces(const RemeshTask& task) {
+// Where nothing is mended, see make_working_surface(): around the ends of a half's cut, too, which are to stay where they are, or around all of it.
+std::vector<char> held_faces(const RemeshTask& task, bool all_of_cut) {
   std::vector<char> held = task.base.held();
   if (!task.source.half) return held;
   const HalfSurface& half = *task.source.half;
   held.resize(half.mesh.faces.size(), 0);
   for (std::size_t f = 0; f < held.size(); ++f)
     for (const int v : half.mesh.faces[f])
-      if (half.corner[v]) held[f] = 1;
+      if (half.corner[v] || (all_of_cut && half.on_plane[v])) held[f] = 1;
   return held;
+}
+
+// Of the boundary in the plane of a half.
+double length_of_cut(const TriangleSurface& surface, const Vec3& normal) {
+  double length = 0;
+  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h) {
+    const Vec3 &a = surface.points[surface.from(h)], &b = surface.points[surface.to(h)];
+    if (surface.opposite[h] < 0 && is_in_mirror(a, normal) && is_in_mirror(b, normal)) length += (b - a).norm();
+  }
+  return length;
 }
 
 }  // namespace
@@ -222,9 +232,17 @@ const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int
   if (faces != faces_ || features != features_) {
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
-    surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task),
-                                    feature_options(features, angle), task.source.density.sizes);
-    if (task.source.mirror) hold_ends_of_cut(surface_, *task.source.mirror);
+    const auto make = [&](bool all_of_cut) {
+      surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
+                                      feature_options(features, angle), task.source.density.sizes);
+    };
+    make(false);
+    if (const std::optional<Vec3>& mirror = task.source.mirror) {
+      // Mending may move a boundary by its tolerance: off the plane.
+      const double wanted = length_of_cut(task.source.placement.to_unit(task.base.mesh), *mirror);
+      if (std::abs(length_of_cut(surface_.mesh, *mirror) - wanted) > tolerance::same_place) make(true);
+      hold_ends_of_cut(surface_, *mirror);
+    }
     faces_ = faces;
     features_ = features;
   }

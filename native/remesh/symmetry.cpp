@@ -222,6 +222,10 @@ Candidate mirrored_candidate(const RemeshTask& task, const Source& half, const C
   c.lost_features = made.lost_features;
   c.final_mesh = mesh.final_mesh();
   place_points(c.final_mesh, made.final_mesh, m, plane);
+  const TopologySummary t = summarize_topology(to_soup(c.final_mesh)), &wanted = task.source.made;
+  if (t.nonmanifold_edges || t.nonmanifold_vertices || t.components != wanted.components || t.boundary_loops != wanted.boundary_loops ||
+      t.euler != wanted.euler)
+    throw NoMap("with its mirror image it does not have the surface's topology");
   const int levels = static_cast<int>(made.level_meshes.size());
   for (int j = 0; j < levels; ++j) {
     c.level_meshes.push_back(j + 1 == levels ? c.final_mesh : mesh.level_mesh(j));
