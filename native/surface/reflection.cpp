@@ -23,7 +23,7 @@ constexpr double kAboutAsGood = 1.25, kLittle = 1e-4;
 constexpr int kDirections = 400;     // of the planes that are tried, over half a sphere
 constexpr int kFewSamples = 150;     // with each of these
 constexpr int kManySamples = 20000;  // to measure the result
-constexpr int kSamples = 2000;       // to move a plane
+constexpr int kSamples = 2000;       // to move a plane, and to compare it with others
 constexpr std::size_t kMoved = 8;    // planes
 constexpr int kRounds = 25;
 
@@ -84,7 +84,7 @@ class ReflectionFinder {
     for (std::size_t i = 0; i < tries.size(); ++i) {
       progress(static_cast<double>(i) / static_cast<double>(tries.size()));
       for (const MirrorPlane& plane : {tries[i].plane, moved(tries[i].plane, some, i < 3, progress)}) {
-        const Asymmetry a = measure(plane, many, progress);
+        const Asymmetry a = measure(plane, some, progress);
         if (any && kAboutAsGood * a.rms + kLittle > best.asymmetry.rms) continue;
         best = {plane, a};
         any = true;
