@@ -63,8 +63,8 @@ class BaseDomain {
   Decimated decimated(double faces, const BaseDomainOptions& options, const Progress& progress) const;
 
   const TriangleSurface& surface_;
-  MeshFeatures curves_;    // features, and where there are some the boundary too
-  MeshFeatures features_;  // with the corners of both
+  MeshFeatures curves_;          // features, and where there are some the boundary too
+  MeshFeatures features_;        // with the corners of both
   std::vector<char> on_mirror_;  // see DecimationOptions
   Decimated decimated_;
 };

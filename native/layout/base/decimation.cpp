@@ -16,6 +16,7 @@
 #include "layout/base/closed_components.h"
 #include "layout/base/curve_classes.h"
 #include "layout/base/jitter.h"
+#include "layout/base/vertex_star.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -156,7 +157,7 @@ class Decimation {
     for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
       if (!mesh_.alive[h / 3] || !features().on(mesh_, h) || features().curves()[mesh_.edge[h]] != curve) continue;
       if (!features().can_collapse(mesh_, h) || !mesh_.can_collapse(h) || makes_bridge(h, star_.around)) continue;
-      gather(mesh_.from(h), star_);
+      star_.gather(mesh_, points_, mesh_.from(h));
       for (std::size_t i = 0; i < star_.spokes.size(); ++i)
         if (star_.spokes[i].half_edge == h) {
           const double cost = full_cost(least_cost(mesh_.from(h), star_, i), mesh_.from(h), star_, i) * (features().keeps_room(mesh_, h) ? 1 : 1e3);
@@ -177,55 +178,13 @@ class Decimation {
     return on_curve_[curve] > (closed_[curve] ? 3 : 0) + 1;
   }
 
-  // What the costs of all collapses that take one vertex away have in common.
-  struct Star {
-    struct Spoke {
-      Vec3 at;
-      int half_edge;  // from the vertex, -1 for the last one at a boundary
-      int end;
-    };
-    struct Face {
-      Vec3 normal;  // the area's double long
-      double area2 = 0;
-    };
-    std::vector<Spoke> spokes;  // counter-clockwise
-    std::vector<Face> faces;    // face i between spokes i and i + 1
-    std::vector<std::pair<double, int>> bounds;
-    std::vector<int> around;
-  };
-
-  void gather(int v, Star& star) const {
-    star.spokes.clear(), star.faces.clear();
-    int g = mesh_.out[v];
-    do {
-      star.spokes.push_back({points_[mesh_.to(g)], g, mesh_.to(g)});
-      const int n = mesh_.ccw(g);
-      if (n < 0) star.spokes.push_back({points_[mesh_.apex(g)], -1, mesh_.apex(g)});
-      g = n;
-    } while (g >= 0 && g != mesh_.out[v]);
-    const std::size_t count = star.spokes.back().half_edge < 0 ? star.spokes.size() - 1 : star.spokes.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 normal = (points_[v] - star.spokes[i].at).cross(points_[v] - star.spokes[(i + 1) % star.spokes.size()].at);
-      star.faces.push_back({normal, normal.norm()});
-    }
-  }
-
-  // Calls visit(face, first spoke, second spoke) for the faces of the star that moving its vertex along a spoke keeps.
-  template <class Visit>
-  static void for_kept_faces(const Star& star, std::size_t spoke, const Visit& visit) {
-    for (std::size_t i = 0; i < star.faces.size(); ++i) {
-      const std::size_t j = i + 1 == star.spokes.size() ? 0 : i + 1;
-      if (i != spoke && j != spoke) visit(star.faces[i], star.spokes[i].at, star.spokes[j].at);
-    }
-  }
-
   double fineness(int a, int b) const { return options_.fineness.empty() ? 1.0 : 0.5 * (options_.fineness[a] + options_.fineness[b]); }
 
   // The part of a collapse's cost that the rest only multiplies, by no less than 1: the distance to the surface and the longest edge.
-  double least_cost(int v, const Star& star, std::size_t spoke) const {
+  double least_cost(int v, const VertexStar& star, std::size_t spoke) const {
     const Vec3& target = star.spokes[spoke].at;
     double longest = 0;
-    for_kept_faces(star, spoke, [&](const Star::Face&, const Vec3& a, const Vec3& b) {
+    star.for_kept_faces(spoke, [&](const VertexStar::Face&, const Vec3& a, const Vec3& b) {
       longest = std::max({longest, (target - a).squaredNorm(), (target - b).squaredNorm()});
     });
     const VertexQuadric &mine = quadrics_[v], &other = quadrics_[star.spokes[spoke].end];
@@ -236,19 +195,19 @@ class Decimation {
 
   // How long the edge of a curve gets that loses a star's vertex along a spoke. Edges much longer than those beside them lie far off a bent curve,
   // and the quads between them fold.
-  double curve_edge_without(const Star& star, std::size_t spoke) const {
-    for (const Star::Spoke& other : star.spokes)
+  double curve_edge_without(const VertexStar& star, std::size_t spoke) const {
+    for (const VertexStar::Spoke& other : star.spokes)
       if (other.end != star.spokes[spoke].end && (other.half_edge < 0 || features().on(mesh_, other.half_edge)))
         return (other.at - star.spokes[spoke].at).norm() * fineness(other.end, star.spokes[spoke].end);
     return 0;
   }
 
   // Times the shape of the new triangles, how far they turn, valences, and the evenness of curves.
-  double full_cost(double error, int v, const Star& star, std::size_t spoke) const {
+  double full_cost(double error, int v, const VertexStar& star, std::size_t spoke) const {
     const int h = star.spokes[spoke].half_edge, u = star.spokes[spoke].end, o = mesh_.opposite[h];
     const Vec3& target = star.spokes[spoke].at;
     double worst_shape = 1, worst_turn = 1;
-    for_kept_faces(star, spoke, [&](const Star::Face& face, const Vec3& a, const Vec3& b) {
+    star.for_kept_faces(spoke, [&](const VertexStar::Face& face, const Vec3& a, const Vec3& b) {
       const Vec3 ab = b - a, au = target - a, bu = target - b;
       const Vec3 fresh = au.cross(bu);
       const double area2 = fresh.norm();
@@ -274,11 +233,11 @@ class Decimation {
   }
 
   // The cheapest collapse of v that the topology allows.
-  Candidate cheapest(int v, Star& star) const {
+  Candidate cheapest(int v, VertexStar& star) const {
     Candidate best;
     best.vertex = v;
     if ((!options_.fixed.empty() && options_.fixed[v]) || features().is_corner(v)) return best;
-    gather(v, star);
+    star.gather(mesh_, points_, v);
     // A boundary vertex moves along its outgoing boundary edge.
     const std::size_t ways = mesh_.is_boundary(v) ? 1 : star.spokes.size();
     star.bounds.clear();
@@ -388,7 +347,7 @@ class Decimation {
     }
     heap_.resize(vertices.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices.size(), 1024), [&](const tbb::blocked_range<std::size_t>& range) {
-      Star star;
+      VertexStar star;
       for (std::size_t i = range.begin(); i < range.end(); ++i) heap_[i] = cheapest(vertices[i], star);
     });
     std::erase_if(heap_, [](const Candidate& c) { return c.half_edge < 0; });
@@ -494,7 +453,7 @@ class Decimation {
   std::vector<Queued> queued_;
   std::vector<std::uint32_t> stamps_;  // of the last candidate, by vertex: earlier ones in the heap count for nothing
   std::vector<Candidate> heap_;
-  Star star_;
+  VertexStar star_;
   std::vector<int> ring_;
   std::vector<int> on_curve_;  // per feature curve: its vertices, but corners
   std::vector<char> closed_;   // per feature curve

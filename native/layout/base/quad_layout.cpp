@@ -19,9 +19,9 @@ namespace {
 
 // What a pair of triangles across a feature costs, which no badness of a quad comes near.
 constexpr double kAcross = 1000;
-constexpr double kLacking = 100;   // what it costs that a node on a feature gets a straight corner: more than any distance or shape
-constexpr double kAlone = 10;      // what it costs that a triangle stays alone on the boundary ...
-constexpr double kStraight = 100;  // ... and where the boundary is one of the curves, along which the corner that it gets is straight
+constexpr double kLacking = 100;      // what it costs that a node on a feature gets a straight corner: more than any distance or shape
+constexpr double kAlone = 10;         // what it costs that a triangle stays alone on the boundary ...
+constexpr double kStraight = 100;     // ... and where the boundary is one of the curves, along which the corner that it gets is straight
 constexpr double kSplitMirror = 500;  // what it costs that a triangle has no mate but its mirror image
 constexpr double kStuck = 100;        // times that, where the edge between them cannot be collapsed
 
