@@ -136,7 +136,8 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   CandidateSearch with = std::move(*best);
   if (with.candidate && inverted(*with.candidate) < kManyInverted) return with;
   CandidateSearch without = best_for(task, {.features = false}, false);
-  if (!without.candidate || (with.candidate && least <= badness(task, *without.candidate))) return with.candidate ? std::move(with) : without;
+  if (!without.candidate || (with.candidate && least.second <= badness(task, *without.candidate).second))
+    return with.candidate ? std::move(with) : without;
   without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
   return without;
 }

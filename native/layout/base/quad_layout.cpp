@@ -9,6 +9,8 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "layout/base/closed_components.h"
 #include "layout/base/quad_pairs.h"
@@ -64,12 +66,13 @@ class QuadCoarsening : private QuadPairs {
   struct DiagonalCollapse {
     double cost = 1e300;
     int from = -1, to = -1, face = -1;
+    bool operator<(const DiagonalCollapse& o) const { return std::tie(cost, face, from) < std::tie(o.cost, o.face, o.from); }
   };
   // Of a face, until something changes near it.
   struct Known {
-    bool rests = false;      // no side of it is worth rotating
-    bool collapses = false;  // the ways to collapse its quad are known
-    std::array<DiagonalCollapse, 4> ways;
+    bool rests = false;     // no side of it is worth rotating
+    bool is_stale = false;  // its ways to collapse, which are in the queue, may be others by now
+    std::vector<DiagonalCollapse> ways;
   };
   struct State {
     std::size_t log = 0;
@@ -93,7 +96,8 @@ class QuadCoarsening : private QuadPairs {
     faces_ = state.faces;
     vertices_ = state.vertices;
     for (std::size_t i = 0; i < faces_.size(); ++i) mate_[faces_[i]] = state.mate[i], split_[faces_[i]] = state.split[i];
-    for (const int f : faces_) known(f) = {};
+    for (const int f : faces_) forget_face(f);
+    std::fill(may_be_doublet_.begin(), may_be_doublet_.end(), 1);
     for (std::size_t i = 0; i < vertices_.size(); ++i) quadrics_[vertices_[i]] = state.quadrics[i];
   }
 
@@ -177,6 +181,9 @@ class QuadCoarsening : private QuadPairs {
     slot_.assign(mesh_.alive.size(), -1);
     for (std::size_t i = 0; i < faces_.size(); ++i) slot_[faces_[i]] = static_cast<int>(i);
     known_.assign(faces_.size(), {});
+    queue_.clear(), stale_.clear();
+    for (const int f : faces_) forget_face(f);
+    may_be_doublet_.assign(points_.size(), 1);
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const PairCandidate& c = candidates[choice[i]];
       const int f = faces_[i];
@@ -234,6 +241,8 @@ class QuadCoarsening : private QuadPairs {
     const int v = mesh_.from(h), u = mesh_.to(h);
     quadrics_[u].planes += quadrics_[v].planes;
     quadrics_[u].area += quadrics_[v].area;
+    forget_face(h / 3);
+    if (mesh_.opposite[h] >= 0) forget_face(mesh_.opposite[h] / 3);
     mesh_.collapse(h);
     log_.push_back({MeshEdit::Kind::Collapse, h});
     mesh_.ring(u, ring_);
@@ -244,6 +253,11 @@ class QuadCoarsening : private QuadPairs {
   double finer(int v) const { return options_.fineness.empty() ? 1.0 : options_.fineness[v]; }
 
   Known& known(int f) { return known_[slot_[f]]; }
+  void forget_face(int f) {
+    Known& k = known(f);
+    k.rests = false;
+    if (!std::exchange(k.is_stale, true)) stale_.push_back(f);
+  }
   template <class Visit>
   void for_faces_at(int v, const Visit& visit) const {
     int h = mesh_.out[v];
@@ -254,10 +268,11 @@ class QuadCoarsening : private QuadPairs {
   }
   // What is known of the quads around a vertex, and of those that touch them, holds no longer.
   void forget(int v) {
+    may_be_doublet_[v] = 1;
     for_faces_at(v, [&](int f) {
       for (const int g : {f, mate_[f]}) {
         if (!mesh_.alive[g]) continue;
-        for (int i = 0; i < 3; ++i) for_faces_at(mesh_.origin[3 * g + i], [&](int near) { known(near) = known(mate_[near]) = {}; });
+        for (int i = 0; i < 3; ++i) for_faces_at(mesh_.origin[3 * g + i], [&](int near) { forget_face(near), forget_face(mate_[near]); });
       }
     });
   }
@@ -270,8 +285,8 @@ class QuadCoarsening : private QuadPairs {
   }
   // An interior vertex between two quads only: the quads become one.
   bool remove_doublet(int v) {
-    if (mesh_.is_boundary(v) || features_.is_on_curve(v) || excess(v) != -2) return false;
-    if (keeps_from_straight(v)) return false;
+    may_be_doublet_[v] = !mesh_.is_boundary(v) && !features_.is_on_curve(v) && excess(v) == -2;
+    if (!may_be_doublet_[v] || keeps_from_straight(v)) return false;
     std::vector<int> faces;
     int h = mesh_.out[v];
     do {
@@ -391,28 +406,30 @@ class QuadCoarsening : private QuadPairs {
            kLacking * lacking;
   }
 
+  // Brings the ways to collapse quads near which something has changed up to date.
+  void refresh_queue() {
+    for (const int f : stale_) {
+      Known& k = known(f);
+      for (const DiagonalCollapse& c : k.ways) queue_.erase(c);
+      k.ways.clear();
+      k.is_stale = false;
+      if (!mesh_.alive[f] || !is_pair(f) || mate_[f] < f) continue;
+      const int d = diagonal(f);
+      const int x = mesh_.from(d), y = mesh_.to(d), p = mesh_.apex(d), q = mesh_.apex(mesh_.opposite[d]);
+      for (const DiagonalCollapse& c : {DiagonalCollapse{diagonal_cost(f, x, y, p, q), x, y, f},
+                                        {diagonal_cost(f, y, x, p, q), y, x, f},
+                                        {diagonal_cost(f, p, q, x, y), p, q, f},
+                                        {diagonal_cost(f, q, p, x, y), q, p, f}})
+        if (c.cost < 1e299) k.ways.push_back(c);
+      queue_.insert(k.ways.begin(), k.ways.end());
+    }
+    stale_.clear();
+  }
+
   // Collapses the cheapest diagonal that leaves enough quads, and cleans up.
   bool collapse_cheapest() {
-    std::vector<DiagonalCollapse> all;
-    for (const int f : faces_) {
-      if (!is_pair(f) || mate_[f] < f) continue;
-      Known& k = known(f);
-      if (!k.collapses) {
-        const int d = diagonal(f);
-        const int x = mesh_.from(d), y = mesh_.to(d), p = mesh_.apex(d), q = mesh_.apex(mesh_.opposite[d]);
-        k.ways = {DiagonalCollapse{diagonal_cost(f, x, y, p, q), x, y, f},
-                  {diagonal_cost(f, y, x, p, q), y, x, f},
-                  {diagonal_cost(f, p, q, x, y), p, q, f},
-                  {diagonal_cost(f, q, p, x, y), q, p, f}};
-        k.collapses = true;
-      }
-      all.insert(all.end(), k.ways.begin(), k.ways.end());
-    }
-    std::sort(all.begin(), all.end(), [](const DiagonalCollapse& a, const DiagonalCollapse& b) {
-      return std::tie(a.cost, a.face, a.from) < std::tie(b.cost, b.face, b.from);
-    });
-    for (const DiagonalCollapse& c : all) {
-      if (c.cost >= 1e299) return false;
+    refresh_queue();
+    for (const DiagonalCollapse& c : queue_) {
       const int component = components_.of[c.from];
       if (component >= 0 && finished_[component]) continue;
       // Few quads may clean each other away.
@@ -441,7 +458,7 @@ class QuadCoarsening : private QuadPairs {
     for (int sweep = 0; sweep < 50; ++sweep) {
       bool changed = false;
       for (const int v : vertices_)
-        if (mesh_.vertex_alive(v) && remove_doublet(v)) changed = true;
+        if (may_be_doublet_[v] && mesh_.vertex_alive(v)) changed |= remove_doublet(v);
       drop_dead();
       for (const int f : faces_) {
         if (known(f).rests) continue;
@@ -467,7 +484,9 @@ class QuadCoarsening : private QuadPairs {
   std::vector<int> faces_, vertices_;  // that are alive, see list_live()
   std::vector<int> slot_;              // per face that was there when they were paired: its place in known_
   std::vector<Known> known_;
-  std::vector<int> ring_;
+  std::set<DiagonalCollapse> queue_;  // of all quads but those of stale faces
+  std::vector<char> may_be_doublet_;  // per vertex: it is one, or something has changed at it
+  std::vector<int> stale_, ring_;
   double side_ = 1;
 };
 
