@@ -87,8 +87,7 @@ void bind_mesh_io(py::module_& module) {
   using py::arg;
   module.def("read_mesh", &read_mesh, arg("path"), arg("density") = "",
              "Reads .ply, .obj, .off or .stl: (points, face_offsets, face_indices). density: name of a property of a .ply's vertices, whose values "
-             "are returned "
-             "as well, as a fourth; 'color' is the brightness of red, green and blue.");
+             "are returned as well, as a fourth; 'color' is the brightness of red, green and blue.");
   module.def("write_mesh", &write_mesh, arg("path"), arg("points"), arg("face_offsets"), arg("face_indices"),
              "Writes .ply or .obj; the file appears when it is complete.");
   module.def("topology", &topology, arg("points"), arg("face_offsets"), arg("face_indices"), "Counts of a mesh, as a dict.");

@@ -250,8 +250,7 @@ void bind_remesh(py::module_& module) {
   module.def("remesh", &remesh_and_wait, arg("points"), arg("face_offsets"), arg("face_indices"), arg("settings") = py::dict(),
              arg("density") = py::none(),
              "Remeshes and returns the Result; Ctrl-C ends it. density: one value in [0, 1] a point, of the attribute that the setting `density` "
-             "names: 1 for "
-             "edges 1/4 as long as at 0.5, 0 for edges 4 times as long.");
+             "names: 1 for edges 1/4 as long as at 0.5, 0 for edges 4 times as long.");
 }
 
 }  // namespace hybrid_mesh

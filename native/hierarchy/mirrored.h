@@ -28,6 +28,12 @@ struct Mirrored {
 // with the reason, where an operation and its image are refused together.
 Mirrored mirrored(const HybridMesh& half);
 
+// The vertices of a half's mesh and of its mirror image together. `own`: of the half's; `mirror_sides`: its faces' sides on marked ones, each of them
+// two edges if it `splits` them; `cut_euler`: see HalfSurface.
+inline std::int64_t vertices_with_image(std::int64_t own, std::int64_t mirror_sides, bool splits, int cut_euler) {
+  return 2 * own - (splits ? 2 : 1) * mirror_sides - cut_euler;
+}
+
 // Sides of leaves that are on marked sides.
 std::int64_t count_mirror_sides(const HybridMesh& mesh);
 

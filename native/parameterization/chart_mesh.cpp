@@ -204,7 +204,7 @@ void ChartMesh::remember_flat() const {
 double ChartMesh::finer_on(int f) const { return fineness_on_face(fineness, mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]); }
 
 double ChartMesh::squared_length(int a, int b) const {
-  const double finer = fineness.empty() ? 1.0 : 0.5 * (fineness[a] + fineness[b]);
+  const double finer = fineness_on_edge(fineness, a, b);
   return (points[b] - points[a]).squaredNorm() * finer * finer;
 }
 

@@ -17,6 +17,8 @@ struct PatchMap {
   std::vector<std::array<int, 3>> triangles;  // #T, counter-clockwise in uv
   std::vector<int> source_face;               // #T: face of the repaired surface that the triangle lies on
   std::vector<std::array<float, 9>> source;   // #T: barycentrics of the three corners in that face, corner by corner
+
+  bool is_on_side(std::size_t v, int side) const { return (side % 2 == 0 ? uv[v].y() : uv[v].x()) == (side == 0 || side == 3 ? 0.0 : 1.0); }
 };
 
 // What a map gives at a point of the square.

@@ -43,7 +43,7 @@ class LeafMesh {
     const std::int64_t own = splits_all() ? split_vertices(hierarchy_) : closed_vertices(hierarchy_);
     if (!cut_euler_) return own;
     const bool splits = splits_all() || (!hierarchy_.conforming() && hierarchy_.closure() == FaceClosure::Quads);
-    return 2 * own - (splits ? 2 : 1) * mirror_sides_ - *cut_euler_;
+    return vertices_with_image(own, mirror_sides_, splits, *cut_euler_);
   }
   // The vertices with every leaf refined.
   std::int64_t vertices_of_next_level() const {

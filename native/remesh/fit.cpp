@@ -218,25 +218,20 @@ double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return sum;
 }
 
-// Of unit length, or 0.
-Vec3 face_normal(const QuadMesh& mesh, const std::vector<Vec3>& points, std::size_t f) {
+// As long as the face is large, twice.
+Vec3 area_vector(const QuadMesh& mesh, const std::vector<Vec3>& points, std::size_t f) {
   const std::int64_t begin = mesh.offsets[f], end = mesh.offsets[f + 1];
   const Vec3& origin = points[mesh.indices[begin]];
   Vec3 sum = Vec3::Zero();
   for (std::int64_t i = begin + 1; i + 1 < end; ++i) sum += (points[mesh.indices[i]] - origin).cross(points[mesh.indices[i + 1]] - origin);
-  const double l = sum.norm();
-  return l > 0 ? Vec3(sum / l) : sum;
+  return sum;
 }
 
 std::vector<Vec3> vertex_normals(const QuadMesh& mesh) {
   std::vector<Vec3> normals(mesh.points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const std::int64_t begin = mesh.offsets[f], n = mesh.offsets[f + 1] - begin;
-    Vec3 sum = Vec3::Zero();
-    const Vec3& origin = mesh.points[mesh.indices[begin]];
-    for (std::int64_t i = 1; i + 1 < n; ++i)
-      sum += (mesh.points[mesh.indices[begin + i]] - origin).cross(mesh.points[mesh.indices[begin + i + 1]] - origin);
-    for (std::int64_t i = 0; i < n; ++i) normals[mesh.indices[begin + i]] += sum;
+    const Vec3 sum = area_vector(mesh, mesh.points, f);
+    for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) normals[mesh.indices[i]] += sum;
   }
   for (Vec3& n : normals) {
     const double l = n.norm();
@@ -286,7 +281,7 @@ void keep_unfolded(QuadMesh& mesh, const std::vector<Vec3>& before) {
     for (const std::size_t f : faces) {
       const std::int64_t begin = mesh.offsets[f];
       const int n = static_cast<int>(mesh.offsets[f + 1] - begin);
-      const Vec3 normal = face_normal(mesh, before, f);
+      const Vec3 normal = area_vector(mesh, before, f).normalized();
       bool folded = false;
       for (int i = 0; i < n && !folded; ++i) {
         const double sine = corner_sine(mesh, mesh.points, f, i, normal);

@@ -19,8 +19,8 @@ bool lies_in_plane(const PatchMap& map, int side, const Vec3& normal) {
   int in = 0, all = 0;
   std::array<bool, 2> end{};
   for (std::size_t v = 0; v < map.uv.size(); ++v) {
-    const double across = side % 2 == 0 ? map.uv[v].y() : map.uv[v].x(), along = side % 2 == 0 ? map.uv[v].x() : map.uv[v].y();
-    if (across != (side == 0 || side == 3 ? 0.0 : 1.0)) continue;
+    if (!map.is_on_side(v, side)) continue;
+    const double along = side % 2 == 0 ? map.uv[v].x() : map.uv[v].y();
     const bool is_in = is_in_mirror(map.positions[v], normal);
     if (along == 0 || along == 1) end[along == 1] = is_in;
     ++all;
@@ -73,7 +73,7 @@ std::int64_t whole_vertices(const HybridMesh& hierarchy, const Source& source) {
   const std::int64_t vertices = closed_vertices(hierarchy);
   if (!source.mirror) return vertices;
   const bool splits = !hierarchy.conforming() && hierarchy.closure() == FaceClosure::Quads;
-  return 2 * vertices - (splits ? 2 : 1) * count_mirror_sides(hierarchy) - source.half->cut_euler;
+  return vertices_with_image(vertices, count_mirror_sides(hierarchy), splits, source.half->cut_euler);
 }
 
 std::int64_t whole_vertices(const QuadMesh& mesh, const Source& source) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/r2_sequence.h"
+
 namespace hybrid_mesh {
 
 namespace {
@@ -87,11 +89,7 @@ SurfaceSamples::SurfaceSamples(const HybridMesh& hierarchy, const std::vector<in
       const double f = density_of(owner, map, t, finer);
       area += 0.5 * l * f;
       for (const std::int64_t target = static_cast<std::int64_t>(area * density); made < target; ++made) {
-        // Roberts' R2 sequence, folded into the triangle.
-        double a = 0.5 + 0.7548776662466927 * static_cast<double>(made), b = 0.5 + 0.5698402909980532 * static_cast<double>(made);
-        a -= std::floor(a);
-        b -= std::floor(b);
-        if (a + b > 1) a = 1 - a, b = 1 - b;
+        const auto [a, b] = r2_in_triangle(made);
         const double c = 1 - a - b;
         const Vec2 uv = c * map.uv[t[0]] + a * map.uv[t[1]] + b * map.uv[t[2]];
         if (fineness(hierarchy, owner, uv.x(), uv.y(), finest) == 0) continue;

@@ -67,12 +67,11 @@ class SharpCut {
   // The side of a map that is in the plane across a normal.
   bool operator()(const PatchMap& map, int side, const Vec3& normal) const {
     if (least_ > 1) return false;
-    const auto is_on = [&](int v) { return (side % 2 == 0 ? map.uv[v].y() : map.uv[v].x()) == (side == 0 || side == 3 ? 0.0 : 1.0); };
     double sharp = 0, all = 0;
     for (const auto& t : map.triangles)
       for (int i = 0; i < 3; ++i) {
         const int a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
-        if (!is_on(a) || !is_on(b)) continue;
+        if (!map.is_on_side(a, side) || !map.is_on_side(b, side)) continue;
         const Vec3 edge = map.positions[b] - map.positions[a], up = edge.cross(map.positions[c] - map.positions[a]);
         const double length = edge.norm();
         all += length;

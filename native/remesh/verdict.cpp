@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "remesh/figures.h"
+#include "remesh/mirror_sides.h"
 #include "remesh/protrusion.h"
 
 namespace hybrid_mesh {
@@ -86,15 +87,16 @@ std::optional<Reason> few_vertices(const Finished& f) {
   const bool uniform = options.refinement == Refinement::Uniform;
   const bool other_bound = options.error > 0 || options.levels >= 0;
   const bool base_is_as_told = uniform && (options.base == BaseSize::Given || f.candidate.base_given);
-  const auto made = static_cast<double>(f.candidate.final_mesh.points.size()), allowed = static_cast<double>(options.vertices);
+  const std::int64_t used = whole_vertices(f.candidate.final_mesh, f.task.source);
+  const auto made = static_cast<double>(used), allowed = static_cast<double>(options.vertices);
   if (options.vertices == 0 || other_bound || base_is_as_told || made >= kEnoughVertices * allowed) return {};
   const std::string left = !uniform                            ? "no more of its quads could be split"
                            : options.base == BaseSize::Minimal ? "the next level would have too many; an automatic base (base_quads) or adaptive "
                                                                  "refinement uses them"
                                                                : "no base was found that uses them; adaptive refinement does";
   return Reason{"vertices",
-                "only " + std::to_string(f.candidate.final_mesh.points.size()) + " of the " + std::to_string(options.vertices) +
-                    " vertices that are allowed are used, " + formatted("%.1f", 100 * made / allowed) + " %: " + left,
+                "only " + std::to_string(used) + " of the " + std::to_string(options.vertices) + " vertices that are allowed are used, " +
+                    formatted("%.1f", 100 * made / allowed) + " %: " + left,
                 {}};
 }
 

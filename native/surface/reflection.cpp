@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/r2_sequence.h"
 #include "surface/closest_point.h"
 #include "surface/placement.h"
 
@@ -39,10 +40,7 @@ std::vector<Vec3> spread_points(const TriangleSurface& surface, int count) {
   for (int i = 0; i < count; ++i) {
     const auto at = std::upper_bound(area_up_to.begin(), area_up_to.end(), (i + 0.5) / count * total) - area_up_to.begin();
     const auto& f = surface.faces[std::min<std::size_t>(at, surface.faces.size() - 1)];
-    // The R2 sequence (Roberts, 2018) in the triangle.
-    constexpr double g = 1.32471795724474602596;
-    double u = std::fmod(0.5 + i / g, 1.0), v = std::fmod(0.5 + i / (g * g), 1.0);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const auto [u, v] = r2_in_triangle(i);
     points.push_back(surface.points[f[0]] + u * (surface.points[f[1]] - surface.points[f[0]]) + v * (surface.points[f[2]] - surface.points[f[0]]));
   }
   return points;

@@ -37,6 +37,11 @@ inline double fineness_on_face(const std::vector<double>& fineness, int a, int b
   return fineness.empty() ? 1.0 : (fineness[a] + fineness[b] + fineness[c]) / 3;
 }
 
+// ... and on an edge.
+inline double fineness_on_edge(const std::vector<double>& fineness, int a, int b) {
+  return fineness.empty() ? 1.0 : 0.5 * (fineness[a] + fineness[b]);
+}
+
 // The area in the metric of the surface's field.
 double measured_area(const TriangleSurface& surface);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/disjoint_sets.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 // The surface between curves.
 struct Rims {
   int inner_vertices = 0, inner_half_edges = 0, faces = 0;
-  bool open = false;
   std::vector<std::vector<int>> loops;  // of half-edges, the piece on their left
 };
 
@@ -36,7 +36,6 @@ class ClassSearch {
     for (std::size_t p = 0; p < rims_.size(); ++p) {
       CurveClasses::Piece& piece = out.pieces.emplace_back();
       piece.odd = rims_[p].faces % 2 == 1;
-      piece.open = rims_[p].open;
       std::vector<int> on_rim;
       for (const std::vector<int>& loop : rims_[p].loops) {
         const std::size_t before = on_rim.size();
@@ -44,9 +43,8 @@ class ClassSearch {
           const int curve = features_.curves()[mesh_.edge[loop[i]]];
           const int a = mesh_.from(loop[i]), b = mesh_.to(loop[i]);
           const int sides = mesh_.opposite[loop[i]] < 0 ? 2 : 1;  // seen from both, if it has two
-          const double finer = fineness_.empty() ? 1.0 : 0.5 * (fineness_[a] + fineness_[b]);
           out.edges[curve] += sides;
-          out.length[curve] += 0.5 * sides * (points_[b] - points_[a]).norm() * finer;
+          out.length[curve] += 0.5 * sides * (points_[b] - points_[a]).norm() * fineness_on_edge(fineness_, a, b);
           const int last = features_.curves()[mesh_.edge[loop[(i + loop.size() - 1) % loop.size()]]];
           if (curve != last || features_.is_corner(a)) on_rim.push_back(curve);
         }
@@ -78,13 +76,9 @@ class ClassSearch {
         ++rims.faces;
         for (int h = 3 * f; h < 3 * f + 3; ++h) {
           const int o = mesh_.opposite[h], v = mesh_.from(h);
-          if (!features_.is_on_curve(v) && !mesh_.is_boundary(v) && !inner[v]) inner[v] = 1, ++rims.inner_vertices;
+          if (!features_.is_on_curve(v) && !inner[v]) inner[v] = 1, ++rims.inner_vertices;
           if (features_.on(mesh_, h)) {
             rim.push_back(h);
-            continue;
-          }
-          if (o < 0) {
-            rims.open = true;
             continue;
           }
           ++rims.inner_half_edges;
@@ -94,7 +88,7 @@ class ClassSearch {
         }
       }
       for (const int start : rim) {
-        if (seen[start] || rims.open) continue;
+        if (seen[start]) continue;
         std::vector<int>& loop = rims.loops.emplace_back();
         for (int h = start; !seen[h];) {
           seen[h] = 1;
@@ -103,8 +97,6 @@ class ClassSearch {
           while (!features_.on(mesh_, h)) h = EditMesh::next(mesh_.opposite[h]);
         }
       }
-      // Of an open piece, curves matter for their length alone.
-      if (rims.open && !rim.empty()) rims.loops.push_back(rim);
     }
   }
 
@@ -112,7 +104,6 @@ class ClassSearch {
   int quads_at(int h) const { return features_.regular_quads(mesh_, points_, features_.sector(mesh_, h)); }
 
   void join_opposite(const Rims& rims) {
-    if (rims.open) return;
     const int euler = rims.inner_vertices - rims.inner_half_edges / 2 + rims.faces;
     // The curves between corners, side by side.
     std::vector<std::vector<int>> sides;
@@ -174,12 +165,12 @@ std::vector<int> CurveClasses::way_to_even(const std::vector<char>& odd, const s
     for (const int k : pieces[p].classes)
       if (usable[k]) pieces_of[k].push_back(static_cast<int>(p));
   for (std::size_t start = 0; start < pieces.size(); ++start) {
-    if (!odd[start] || pieces[start].open) continue;
+    if (!odd[start]) continue;
     // Breadth first.
     std::vector<int> by(pieces.size(), -1), before(pieces.size(), -1), queue{static_cast<int>(start)};
     for (std::size_t i = 0; i < queue.size(); ++i) {
       int p = queue[i];
-      if (i > 0 && (odd[p] || pieces[p].open)) {
+      if (i > 0 && odd[p]) {
         std::vector<int> way;
         for (; p != static_cast<int>(start); p = before[p]) way.push_back(by[p]);
         return way;

@@ -11,7 +11,7 @@ namespace hybrid_mesh {
 // how a vertex less on each curve of such a class changes the pieces at its ends, whose triangles can be paired only where they are even in number.
 struct CurveClasses {
   struct Piece {
-    bool odd = false, open = false;
+    bool odd = false;
     std::vector<int> classes;  // of which an odd number of curves are on its rim
   };
   std::vector<std::vector<int>> curves;  // per class
@@ -20,15 +20,14 @@ struct CurveClasses {
   std::vector<Piece> pieces;
 
   // Changes how many edges each curve of a class is to have by one, so that no piece stays odd that can be helped: up where the class has more, or
-  // else down. A piece with a boundary may be odd: a triangle stays alone there.
+  // else down. A curve on the boundary changes one piece alone.
   void make_even(std::vector<int>& wanted) const;
 
  private:
   std::vector<int> way_to_even(const std::vector<char>& odd, const std::vector<char>& usable) const;
 };
 
-// `fineness`: see DecimationOptions.
-CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features,
-                           const std::vector<double>& fineness = {});
+// `features`: the boundary, if there is one, among them. `fineness`: see DecimationOptions.
+CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features, const std::vector<double>& fineness);
 
 }  // namespace hybrid_mesh

@@ -17,6 +17,7 @@
 #include "layout/base/curve_classes.h"
 #include "layout/base/jitter.h"
 #include "layout/base/vertex_star.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -178,8 +179,6 @@ class Decimation {
     return on_curve_[curve] > (closed_[curve] ? 3 : 0) + 1;
   }
 
-  double fineness(int a, int b) const { return options_.fineness.empty() ? 1.0 : 0.5 * (options_.fineness[a] + options_.fineness[b]); }
-
   // The part of a collapse's cost that the rest only multiplies, by no less than 1: the distance to the surface and the longest edge.
   double least_cost(int v, const VertexStar& star, std::size_t spoke) const {
     const Vec3& target = star.spokes[spoke].at;
@@ -189,7 +188,7 @@ class Decimation {
     });
     const VertexQuadric &mine = quadrics_[v], &other = quadrics_[star.spokes[spoke].end];
     const double cost = (mine.planes(target) + other.planes(target)) / std::max(mine.area + other.area, 1e-300) + options_.evenness * longest;
-    const double finer = fineness(v, star.spokes[spoke].end);
+    const double finer = fineness_on_edge(options_.fineness, v, star.spokes[spoke].end);
     return cost * finer * finer;
   }
 
@@ -198,7 +197,7 @@ class Decimation {
   double curve_edge_without(const VertexStar& star, std::size_t spoke) const {
     for (const VertexStar::Spoke& other : star.spokes)
       if (other.end != star.spokes[spoke].end && (other.half_edge < 0 || features().on(mesh_, other.half_edge)))
-        return (other.at - star.spokes[spoke].at).norm() * fineness(other.end, star.spokes[spoke].end);
+        return (other.at - star.spokes[spoke].at).norm() * fineness_on_edge(options_.fineness, other.end, star.spokes[spoke].end);
     return 0;
   }
 

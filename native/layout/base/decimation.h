@@ -24,7 +24,7 @@ struct DecimationOptions {
   std::uint64_t seed = 1;   // breaks near-ties only
   std::vector<char> fixed;  // per vertex: stays; all other boundary vertices go, whatever the number of faces. Empty: none is fixed, and the boundary
                             // is simplified with the rest
-  const MeshFeatures* features = nullptr;  // curves that stay; the faces between them stay even in number where they can be paired
+  const MeshFeatures* features = nullptr;  // curves that stay, the boundary among them; the faces between them stay even in number
   double curve_edge = 0;                   // how long the edges of curves are to be
   std::vector<double> fineness;            // per vertex, by how much lengths count more there; empty: the same everywhere
   // Per vertex: it is on a boundary along which the surface is to be joined with its mirror image. No edge but the boundary's joins two of them, or

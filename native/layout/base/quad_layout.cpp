@@ -6,8 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -15,6 +13,7 @@
 #include "layout/base/closed_components.h"
 #include "layout/base/quad_pairs.h"
 #include "layout/base/triangle_pairing.h"
+#include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -401,7 +400,7 @@ class QuadCoarsening : private QuadPairs {
     for (const int v : {x, y}) lacking += (features_.is_on_curve(v) || is_inside_mirror(v)) && lacks_quads(half_at(face, v), 1);
     const auto change = [&](int v, int by) { return sector_energy(half_at(face, v), by) - sector_energy(half_at(face, v), 0); };
     const double valence = change(to, added) + change(x, -1) + change(y, -1) - valence_energy(excess(from));
-    const double side = side_ / (0.5 * (finer(from) + finer(to))), scale = side * side;
+    const double side = side_ / fineness_on_edge(options_.fineness, from, to), scale = side * side;
     return error / scale + 0.02 * longest / scale + 0.05 * std::max(0.0, total) + 0.03 * std::max(0.0, worst - 2) + 0.03 * valence +
            kLacking * lacking;
   }
