@@ -214,6 +214,7 @@ class AdaptiveRefinement {
   // Of the final mesh. Where the shape needs small quads, distance comes before evenness: vertices may slide further than in a uniform mesh.
   static SurfaceFitOptions final_fit() {
     SurfaceFitOptions options;
+    options.apart = true;
     options.first.rounds = 2;
     options.first.square_smoothness = options.first.smoothness / 3;
     return options;

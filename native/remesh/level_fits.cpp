@@ -73,6 +73,7 @@ SurfaceFitOptions level_fit(bool finest, int level) {
   FitOptions& fit = options.first;
   if (finest) {
     options.turns = 2;
+    options.apart = true;
     fit.rounds = 2;
     // Only where quads are as good as square: elsewhere the shape would suffer more than the distance gains.
     fit.square_smoothness = 0.012;

@@ -2,15 +2,14 @@
 #include "remesh/mesh_intersections.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 #include <vector>
 
 #include "base/tolerances.h"
+#include "remesh/crossing_faces.h"
 #include "surface/closest_point.h"
 #include "surface/self_intersections.h"
 #include "surface/triangle_intersection.h"
-#include "surface/triangulation.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -84,21 +83,10 @@ std::vector<char> boxes_met(const std::vector<Box>& boxes, const std::vector<std
   return met;
 }
 
-Vec3 middle_of(const std::vector<Vec3>& polygon) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : polygon) sum += p;
-  return sum / static_cast<double>(polygon.size());
-}
-
 }  // namespace
 
 MeshIntersections mesh_intersections(const QuadMesh& mesh, const TriangleSurface& surface, const Placement& placement, const Progress& progress) {
-  const Triangulation t = triangulate(to_soup(mesh));
-  std::map<std::pair<int, int>, Vec3> places;  // of pairs of faces: the middle of where they first meet
-  for (const SelfIntersection& s : find_self_intersections(mesh.points, t.triangles, progress.part(0, 0.7))) {
-    const std::pair<int, int> faces = std::minmax(t.polygon[s.faces[0]], t.polygon[s.faces[1]]);
-    if (faces.first != faces.second) places.insert({faces, middle_of(s.common)});
-  }
+  const CrossingFaces places = crossing_faces(mesh, progress.part(0, 0.7));
   MeshIntersections found;
   if (!places.empty()) {
     std::vector<Box> boxes;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "remesh/angle_relaxation.h"
+#include "remesh/crossing_faces.h"
 #include "remesh/surface_samples.h"
 
 namespace hybrid_mesh {
@@ -30,23 +32,88 @@ void fit_to_surface(QuadMesh& mesh, const HybridMesh& hierarchy, const SurfaceFi
   fit_to_samples(mesh, samples.on(hierarchy, mesh), parameter_shares(hierarchy, mesh, options.sizes), options, progress);
 }
 
-void fit_to_samples(QuadMesh& mesh, std::vector<FitSample> on, const std::vector<double>& share, const SurfaceFitOptions& options,
-                    const Progress& progress) {
-  const std::vector<char> held = held_vertices(mesh);
-  FitOptions fit = options.first;
-  fit_mesh(mesh, held, share, on, fit, progress);
-  // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
-  for (int turn = 0; turn < options.turns; ++turn) {
-    relax_angles(mesh, held, AngleRelaxationOptions(), progress);
-    fit.rounds = turn + 1;
-    fit_mesh(mesh, held, share, on, fit, progress);
+namespace {
+
+// A mesh and the samples that it is fitted to.
+class SampleFit {
+ public:
+  SampleFit(QuadMesh& mesh, std::vector<FitSample> samples, const std::vector<double>& share, const SurfaceFitOptions& options,
+            const Progress& progress)
+      : mesh_(mesh), samples_(std::move(samples)), share_(share), options_(options), held_(held_vertices(mesh)), progress_(progress) {}
+
+  void run() {
+    const std::vector<Vec3> on_surface = mesh_.points;
+    for (const FitSample& s : samples_) first_face_.push_back(s.face);
+    fit(mesh_, options_.first.rounds);
+    // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
+    for (int turn = 0; turn < options_.turns; ++turn) {
+      relax_angles(mesh_, held_, AngleRelaxationOptions(), progress_);
+      fit(mesh_, turn + 1);
+    }
+    unfold(mesh_);
+    if (options_.apart) take_apart(on_surface);
   }
+
+ private:
+  void fit(QuadMesh& mesh, int rounds) {
+    FitOptions options = options_.first;
+    options.rounds = rounds;
+    fit_mesh(mesh, held_, share_, samples_, options, progress_);
+  }
+
   // What is still folded is unfolded even where the surface bends: a few quads, at the cost of a little distance.
-  AngleRelaxationOptions unfold;
-  unfold.enough = 0.05;
-  unfold.flatness = -1;
-  unfold.reach = options.unfold;
-  relax_angles(mesh, held, unfold, progress);
+  void unfold(QuadMesh& mesh) const {
+    AngleRelaxationOptions unfold;
+    unfold.enough = 0.05;
+    unfold.flatness = -1;
+    unfold.reach = options_.unfold;
+    relax_angles(mesh, held_, unfold, progress_);
+  }
+
+  // A fit may push one sheet of a thin part, or one side of a fold, through the other; with its vertices on the surface the mesh seldom does that.
+  void take_apart(const std::vector<Vec3>& on_surface) {
+    const TakenBack first = take_back_crossings(mesh_, on_surface, progress_);
+    if (!first.any) return;
+    const Distances before = distances(mesh_);
+    QuadMesh again = mesh_;
+    for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].face = first_face_[i];  // they may have walked to the other sheet
+    fit(again, 1);
+    unfold(again);
+    const TakenBack second = take_back_crossings(again, mesh_.points, progress_);
+    const Distances after = distances(again);
+    if (second.left <= first.left && after.sum <= before.sum) mesh_ = std::move(again);
+    const std::vector<Vec3> folded = mesh_.points;
+    unfold(mesh_);
+    take_back_crossings(mesh_, folded, progress_);
+  }
+
+  struct Distances {
+    double sum = 0, most = 0;  // squared; the sum with the samples' weights
+  };
+  Distances distances(const QuadMesh& mesh) {
+    const std::vector<double> squared = squared_distances(mesh, samples_);
+    Distances d;
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+      d.sum += samples_[i].weight * squared[i];
+      d.most = std::max(d.most, squared[i]);
+    }
+    return d;
+  }
+
+  QuadMesh& mesh_;
+  std::vector<FitSample> samples_;
+  const std::vector<double>& share_;
+  const SurfaceFitOptions& options_;
+  const std::vector<char> held_;
+  const Progress& progress_;
+  std::vector<int> first_face_;  // of every sample
+};
+
+}  // namespace
+
+void fit_to_samples(QuadMesh& mesh, std::vector<FitSample> samples, const std::vector<double>& share, const SurfaceFitOptions& options,
+                    const Progress& progress) {
+  SampleFit(mesh, std::move(samples), share, options, progress).run();
 }
 
 }  // namespace hybrid_mesh

@@ -12,6 +12,7 @@ struct SurfaceFitOptions {
   int turns = 2;                     // of angle relaxation and fit after it
   int finest = 64;                   // leaves finer than this level count as one of it, as in a mesh of that level
   const SizeField* sizes = nullptr;  // of the quads, in the maps' space; none: those of a level are even
+  bool apart = false;                // faces that run through one another are taken apart, and fitted once more from there
   double unfold = 1.0;               // how far folded quads' vertices may go at the end, in lengths of their shortest edge
 };
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/context.h"
+#include "hierarchy/hybrid_mesh.h"
+
+namespace hybrid_mesh {
+
+// Pairs of a mesh's faces, the lower one first, that meet elsewhere than at the vertices that they share, and the middle of where they first meet.
+// Faces are split into triangles by triangulate().
+using CrossingFaces = std::map<std::pair<int, int>, Vec3>;
+CrossingFaces crossing_faces(const QuadMesh& mesh, const Progress& progress);
+
+// Where faces run through one another, vertices around them go back part of their way from `before`: in each knot of such faces as far as leaves the
+// fewest that cross or are inverted. Returns how many these are, pairs and faces; 0 with nothing changed if nothing crosses.
+struct TakenBack {
+  bool any = false;      // crossed
+  std::size_t left = 0;  // pairs that cross, and inverted faces around those that did
+};
+TakenBack take_back_crossings(QuadMesh& mesh, const std::vector<Vec3>& before, const Progress& progress);
+
+}  // namespace hybrid_mesh
