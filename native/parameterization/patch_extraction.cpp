@@ -442,7 +442,10 @@ class Extraction {
         }
       if (start < 0) throw NoMap("a side of base quad " + std::to_string(q) + " is not covered");
       std::vector<int> chain{start};
-      while (next.count(chain.back())) chain.push_back(next[chain.back()]);
+      while (next.count(chain.back())) {
+        chain.push_back(next[chain.back()]);
+        if (chain.size() > next.size() + 1) throw NoMap("a side of base quad " + std::to_string(q) + " runs in a circle");
+      }
       const int axis = side % 2;
       const double sign = side < 2 ? 1 : -1;
       if (map.uv[chain.front()] != square[side] || map.uv[chain.back()] != square[(side + 1) % 4])
