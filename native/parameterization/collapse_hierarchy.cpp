@@ -98,7 +98,11 @@ void CollapseHierarchy::refine(const Progress& progress) {
       relax_in_sweeps(c_, density_, options_.sweeps, progress);
       swept = c_.mesh.vertex_count;
       const int rounds = std::clamp(options_.cone_rounds - 1, 0, 2);
-      for (int round = 0; round < rounds; ++round) report_.cone_moves += move_cones(c_, density_, allowed_);
+      std::vector<int> cones = all_cones(c_);
+      for (int round = 0; round < rounds && !cones.empty(); ++round) {
+        cones = move_cones(c_, density_, cones, allowed_);
+        report_.cone_moves += static_cast<int>(cones.size());
+      }
     }
     progress(1 - static_cast<double>(level) / levels_.size());
   }
