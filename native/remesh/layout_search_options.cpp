@@ -10,6 +10,8 @@ namespace {
 
 // Quads far larger than the shape's features leave nothing yet to choose between layouts by.
 constexpr int kFewQuads = 20;
+// A base of more is what the surface's topology asks for: each round of edits would map all of it anew, and change little of it.
+constexpr int kManyQuads = 1500;
 
 }  // namespace
 
@@ -18,6 +20,7 @@ LayoutSearchOptions layout_search_options(const RemeshOptions& options, const Bu
   search.quads = std::max(base.quads(), static_cast<int>(budget.base_size - budget.boundary_side * base.boundary_sides()));
   search.vertices = 30.0 * base.quads();
   if (base.has_features()) search.rounds = 0;  // edits would not keep them
+  if (base.quads() > kManyQuads) search.rounds = 0;
   if (options.symmetry != Symmetry::None && !request.base_edits) search.rounds = 0;
   if (options.base != BaseSize::Minimal) return search;
   search.vertices = std::max(base.boundary_sides() > 0 ? 3000.0 : 1500.0, search.vertices);

@@ -18,13 +18,10 @@
 namespace hybrid_mesh {
 namespace {
 
-// What a pair of triangles across a feature costs, which no badness of a quad comes near.
-constexpr double kAcross = 1000;
 constexpr double kLacking = 100;      // what it costs that a node on a feature gets a straight corner: more than any distance or shape
 constexpr double kAlone = 10;         // what it costs that a triangle stays alone on the boundary ...
 constexpr double kStraight = 100;     // ... and where the boundary is one of the curves, along which the corner that it gets is straight
 constexpr double kSplitMirror = 500;  // what it costs that a triangle has no mate but its mirror image
-constexpr double kStuck = 100;        // times that, where the edge between them cannot be collapsed
 
 class QuadCoarsening : private QuadPairs {
  public:
@@ -44,7 +41,7 @@ class QuadCoarsening : private QuadPairs {
     double area = 0;
     for (const int v : vertices_) area += quadrics_[v].area * finer(v) * finer(v);
     side_ = std::sqrt(area / std::max(1.0, options_.size));
-    clean();
+    clean_sparing_small_components();
     int rounds = 0;
     while (size() > options_.size) {
       progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
@@ -53,9 +50,7 @@ class QuadCoarsening : private QuadPairs {
     if (quad_count() > options_.least) {
       const State before = state();
       clean();
-      bool few = quad_count() < options_.least;
-      for (std::size_t c = 0; c < components_.faces.size(); ++c) few |= quads_of(static_cast<int>(c)) < kLeastClosedQuads;
-      if (few) restore(before);
+      if (quad_count() < options_.least || !small_components().empty()) restore(before);
     }
     progress(1);
     return layout_of(faces_, vertices_);
@@ -125,6 +120,13 @@ class QuadCoarsening : private QuadPairs {
     for (const int f : faces_)
       if (components_.of[mesh_.origin[3 * f]] == component) faces += is_pair(f) ? 1 : 2;
     return faces / 2;
+  }
+  // Closed ones with fewer quads than a cube.
+  std::vector<int> small_components() const {
+    std::vector<int> small;
+    for (int c = 0; c < static_cast<int>(components_.faces.size()); ++c)
+      if (quads_of(c) < kLeastClosedQuads) small.push_back(c);
+    return small;
   }
   double size() const {
     int sides = 0;
@@ -197,14 +199,6 @@ class QuadCoarsening : private QuadPairs {
 
   // Triangles on both sides of a feature make no quad. Where the number of triangles between features leaves no other way for some, these are taken
   // away together, with the edge between them.
-  bool can_collapse_on_feature(int h) const { return features_.can_collapse(mesh_, h) && mesh_.can_collapse(h); }
-  double cost_across(int h) const {
-    const double length = (points_[mesh_.to(h)] - points_[mesh_.from(h)]).norm();
-    double least = kStuck;
-    for (const int g : {h, mesh_.opposite[h]})
-      if (can_collapse_on_feature(g)) least = std::min(least, features_.keeps_room(mesh_, g) ? 1.0 : 2.0);
-    return kAcross * (least + length);
-  }
   // Returns whether there are some left.
   bool collapse_pairs_across() {
     bool stuck = false;
@@ -257,14 +251,6 @@ class QuadCoarsening : private QuadPairs {
     k.rests = false;
     if (!std::exchange(k.is_stale, true)) stale_.push_back(f);
   }
-  template <class Visit>
-  void for_faces_at(int v, const Visit& visit) const {
-    int h = mesh_.out[v];
-    do {
-      visit(h / 3);
-      h = mesh_.ccw(h);
-    } while (h >= 0 && h != mesh_.out[v]);
-  }
   // What is known of the quads around a vertex, and of those that touch them, holds no longer.
   void forget(int v) {
     may_be_doublet_[v] = 1;
@@ -285,7 +271,7 @@ class QuadCoarsening : private QuadPairs {
   // An interior vertex between two quads only: the quads become one.
   bool remove_doublet(int v) {
     may_be_doublet_[v] = !mesh_.is_boundary(v) && !features_.is_on_curve(v) && excess(v) == -2;
-    if (!may_be_doublet_[v] || keeps_from_straight(v)) return false;
+    if (!may_be_doublet_[v] || keeps_from_straight(v) || is_finished(components_.of[v])) return false;
     std::vector<int> faces;
     int h = mesh_.out[v];
     do {
@@ -430,7 +416,7 @@ class QuadCoarsening : private QuadPairs {
     refresh_queue();
     for (const DiagonalCollapse& c : queue_) {
       const int component = components_.of[c.from];
-      if (component >= 0 && finished_[component]) continue;
+      if (is_finished(component)) continue;
       // Few quads may clean each other away.
       constexpr int some = 8;
       const bool last_ones = quad_count() < 2 * options_.least + some,
@@ -450,6 +436,19 @@ class QuadCoarsening : private QuadPairs {
       finished_[component] = 1;
     }
     return false;
+  }
+
+  bool is_finished(int component) const { return component >= 0 && finished_[component]; }
+
+  // The triangles of a small closed component may pair to quads that clean each other away.
+  void clean_sparing_small_components() {
+    const State before = state();
+    clean();
+    const std::vector<int> small = small_components();
+    for (const int c : small) finished_[c] = 1;
+    if (small.empty()) return;
+    restore(before);
+    clean();
   }
 
   // Removes doublets and rotates edges where that gains, until nothing changes.
@@ -479,7 +478,7 @@ class QuadCoarsening : private QuadPairs {
   const QuadLayoutOptions& options_;
   std::vector<MeshEdit>& log_;
   ClosedComponents components_;        // as the mesh was first
-  std::vector<char> finished_;         // per closed component: it has no quad to give away
+  std::vector<char> finished_;         // per closed component: it has no quad to give away, and keeps its doublets
   std::vector<int> faces_, vertices_;  // that are alive, see list_live()
   std::vector<int> slot_;              // per face that was there when they were paired: its place in known_
   std::vector<Known> known_;

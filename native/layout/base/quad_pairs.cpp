@@ -90,6 +90,15 @@ bool QuadPairs::lacks_quads(int h, int fewer) const {
   return quads_in(sector) - fewer < regular_quads(sector);
 }
 
+double QuadPairs::cost_across(int h) const {
+  constexpr double across = 1000, stuck = 100;
+  const double length = (points_[mesh_.to(h)] - points_[mesh_.from(h)]).norm();
+  double least = stuck;
+  for (const int g : {h, mesh_.opposite[h]})
+    if (can_collapse_on_feature(g)) least = std::min(least, features_.keeps_room(mesh_, g) ? 1.0 : 2.0);
+  return across * (least + length);
+}
+
 double QuadPairs::diagonal_energy(int h) const {
   if (is_inside_mirror(mesh_.from(h)) && !features_.is_on_curve(mesh_.from(h))) {
     const int all = mesh_.valence(mesh_.from(h)) - 1;  // triangles

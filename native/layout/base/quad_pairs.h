@@ -38,6 +38,9 @@ class QuadPairs {
   bool is_on_mirror(int v) const { return !on_mirror_.empty() && on_mirror_[v]; }
   // On the mirror, and no end of it: with its mirror image a quad alone there would have two sides in common.
   bool is_inside_mirror(int v) const { return is_on_mirror(v) && !features_.is_corner(v); }
+  bool can_collapse_on_feature(int h) const { return features_.can_collapse(mesh_, h) && mesh_.can_collapse(h); }
+  // What a pair of triangles across a feature's edge costs, more than any badness of a quad: least where that edge can be taken away with them.
+  double cost_across(int h) const;
   // What it costs that a pair's diagonal goes to from(h).
   double diagonal_energy(int h) const;
 
@@ -47,6 +50,14 @@ class QuadPairs {
             const std::vector<char>& on_mirror)
       : mesh_(mesh), points_(points), features_(features ? *features : none_), boundary_quads_(boundary_quads), on_mirror_(on_mirror) {}
 
+  template <class Visit>
+  void for_faces_at(int v, const Visit& visit) const {
+    int h = mesh_.out[v];
+    do {
+      visit(h / 3);
+      h = mesh_.ccw(h);
+    } while (h >= 0 && h != mesh_.out[v]);
+  }
   // The quads of these faces and vertices, which are all that are alive.
   QuadLayout layout_of(const std::vector<int>& faces, const std::vector<int>& vertices) const;
 
