@@ -54,6 +54,20 @@ Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurfac
   return made;
 }
 
+// More quads than this in a base, of which not even one level is within the budget, take long to map and leave nothing to refine.
+constexpr int kMostQuads = 4000;
+
+void check_size(const BaseDomain& base, const Budget& budget, const Source& source, bool features) {
+  if (base.quads() <= kMostQuads || 4.0 * base.quads() <= static_cast<double>(budget.vertices)) return;
+  const TopologySummary& t = source.topology;
+  const std::string what = std::to_string(t.components) + " components, " + std::to_string(static_cast<std::int64_t>(t.genus)) + " handles and " +
+                           std::to_string(t.boundary_loops) + " boundary loops ask for a base of " + std::to_string(base.quads()) +
+                           " quads, too many for " + std::to_string(budget.vertices) +
+                           " vertices: allow more vertices, drop small components (drop_components), or close small handles (remove_noise)";
+  if (features) throw NoMap(what);
+  throw Error(ErrorCode::InvalidInput, what);
+}
+
 // Two quads with the same four corners are no faces of a mesh that others can read.
 bool has_twins(const QuadGraph& base) {
   std::vector<std::array<int, 4>> corners = base.nodes;
@@ -92,6 +106,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   base_options.mirror = task.source.mirror;
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
   const BaseDomain base = make_base(task, origin, in_use);
+  check_size(base, budget, task.source, features);
   const WorkingSurface& working = in_use.of(task, origin);
   Found<BaseMap> map = map_to_base(working.mesh, base, layout_search_options(options, budget, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
