@@ -8,6 +8,7 @@
 #include <opensubdiv/far/topologyRefiner.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "base/error.h"
@@ -113,6 +114,27 @@ struct Sum {
   void AddWithWeight(const Vec3& point, double weight) { value += weight * point; }
 };
 
+// A mask as OpenSubdiv sums it up: of vertices, and of points that it has made of them.
+struct MaskSum {
+  Mask value;
+  void Clear() { value.clear(); }
+  void AddWithWeight(const MaskSum& other, double weight) {
+    for (const auto& [vertex, share] : other.value) AddWithWeight(vertex, weight * share);
+  }
+  void AddWithWeight(int vertex, double weight) {
+    const auto found = std::find_if(value.begin(), value.end(), [&](const auto& entry) { return entry.first == vertex; });
+    if (found == value.end())
+      value.emplace_back(vertex, weight);
+    else
+      found->second += weight;
+  }
+};
+
+// As if it were the list of all vertices.
+struct Vertices {
+  int operator[](int vertex) const { return vertex; }
+};
+
 std::unique_ptr<Far::TopologyRefiner> make_refiner(const QuadTopology& topology, const VertexFans& fans) {
   using Factory = Far::TopologyRefinerFactory<FannedTopology>;
   Sdc::Options options;
@@ -130,25 +152,34 @@ std::vector<Vec3> values(const std::vector<Sum>& sums) {
   return result;
 }
 
+// What the vertices, edges and faces of a mesh become one level finer.
+template <class Summed, class Result, class Source>
+Result refined_values(const QuadTopology& topology, const VertexFans& fans, const Source& source) {
+  const auto refiner = make_refiner(topology, fans);
+  refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(1));
+  std::vector<Summed> refined(refiner->GetLevel(1).GetNumVertices());
+  Far::PrimvarRefinerReal<double>(*refiner).Interpolate(1, source, refined);
+  Result result;
+  const Far::TopologyLevel& level = refiner->GetLevel(0);
+  result.vertices.reserve(topology.vertex_count);
+  result.edges.reserve(topology.edge_count());
+  result.faces.reserve(topology.face_count());
+  for (int v = 0; v < topology.vertex_count; ++v) result.vertices.push_back(std::move(refined[level.GetVertexChildVertex(v)].value));
+  for (int e = 0; e < topology.edge_count(); ++e) result.edges.push_back(std::move(refined[level.GetEdgeChildVertex(e)].value));
+  for (int f = 0; f < topology.face_count(); ++f) result.faces.push_back(std::move(refined[level.GetFaceChildVertex(f)].value));
+  return result;
+}
+
 }  // namespace
 
 float refined_sharpness(float sharpness) { return Sdc::Crease().SubdivideUniformSharpness(sharpness); }
 
 RefinedPoints refine_points(const QuadTopology& topology, const VertexFans& fans, const std::vector<Vec3>& points) {
-  const auto refiner = make_refiner(topology, fans);
-  refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(1));
-  std::vector<Sum> refined(refiner->GetLevel(1).GetNumVertices());
-  const Vec3* source = points.data();
-  Far::PrimvarRefinerReal<double>(*refiner).Interpolate(1, source, refined);
-  RefinedPoints result;
-  const Far::TopologyLevel& level = refiner->GetLevel(0);
-  result.vertices.reserve(topology.vertex_count);
-  result.edges.reserve(topology.edge_count());
-  result.faces.reserve(topology.face_count());
-  for (int v = 0; v < topology.vertex_count; ++v) result.vertices.push_back(refined[level.GetVertexChildVertex(v)].value);
-  for (int e = 0; e < topology.edge_count(); ++e) result.edges.push_back(refined[level.GetEdgeChildVertex(e)].value);
-  for (int f = 0; f < topology.face_count(); ++f) result.faces.push_back(refined[level.GetFaceChildVertex(f)].value);
-  return result;
+  return refined_values<Sum, RefinedPoints>(topology, fans, points.data());
+}
+
+RefinedMasks refine_masks(const QuadTopology& topology, const VertexFans& fans) {
+  return refined_values<MaskSum, RefinedMasks>(topology, fans, Vertices{});
 }
 
 LimitPoints limit_points(const QuadTopology& topology, const VertexFans& fans, const std::vector<Vec3>& points) {

@@ -26,11 +26,6 @@ float checked(double sharpness, const std::string& what) {
 
 }  // namespace
 
-VertexIndex::VertexIndex(const std::vector<VertexId>& vertices) {
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    if (vertices[i].valid()) of_kind_[vertices[i].code & 3].set(vertices[i].index(), static_cast<int>(i));
-}
-
 MeshTopology::MeshTopology(const HybridMesh& hierarchy, const QuadMesh& mesh) {
   const auto face_count = static_cast<int>(mesh.face_count());
   if (face_count == 0) refuse("a mesh without faces cannot be subdivided");

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/tolerances.h"
 #include "subdivision/catmull_clark.h"
+#include "subdivision/harmonic_extension.h"
 #include "subdivision/mesh_topology.h"
 #include "subdivision/vertex_placement.h"
 
@@ -65,23 +66,21 @@ Vec3 rise_of(const HybridMesh& hierarchy, const std::vector<int>& nodes, const L
 
 // Means of neighbours among the vertices of an operation, from its boundary inwards.
 std::vector<Vec3> harmonic_points(const Repatch& repatch, const LevelPoints& points) {
-  QuadTopology patch;
-  const int outer = static_cast<int>(repatch.boundary.size());
-  patch.vertex_count = outer + repatch.new_vertices;
-  std::set<std::pair<int, int>> edges;
+  const int outer = static_cast<int>(repatch.boundary.size()), count = outer + repatch.new_vertices;
+  std::set<std::array<int, 2>> edges;
   for (const auto& quad : repatch.quads)
     for (int s = 0; s < 4; ++s) {
       const auto place = [&](int c) { return c >= 0 ? c : outer - 1 - c; };
-      edges.insert(std::minmax({place(quad[s]), place(quad[(s + 1) % 4])}));
+      const auto [a, b] = std::minmax({place(quad[s]), place(quad[(s + 1) % 4])});
+      edges.insert({a, b});
     }
-  for (const auto& [a, b] : edges) patch.add_edge(a, b);
-  std::vector<Known> known(patch.vertex_count, Known::No);
-  std::vector<Vec3> values(patch.vertex_count, Vec3::Zero());
+  std::vector<Known> known(count, Known::No);
+  std::vector<Vec3> values(count, Vec3::Zero());
   for (int k = 0; k < outer; ++k) {
     known[k] = Known::Yes;
     values[k] = points(repatch.boundary[k]);
   }
-  if (extend_harmonically(patch, known, values) > 0) refuse("the layout has vertices that no edges join to its boundary");
+  if (extend_harmonically({edges.begin(), edges.end()}, known, values) > 0) refuse("the layout has vertices that no edges join to its boundary");
   return {values.begin() + outer, values.end()};
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "subdivision/vertex_placement.h"
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <limits>
 #include <string>
 
 #include "base/error.h"
+#include "subdivision/harmonic_extension.h"
 
 namespace hybrid_mesh {
 
@@ -50,54 +49,6 @@ QuadMesh own_final_mesh(const HybridMesh& hierarchy) {
   return own_mesh(hierarchy, [](const HybridMesh& mesh) { return mesh.final_mesh(); });
 }
 
-int extend_harmonically(const QuadTopology& topology, const std::vector<Known>& known, std::vector<Vec3>& values) {
-  // Values that a known one reaches.
-  std::vector<int> row(values.size(), -1), queue;
-  std::vector<std::vector<int>> neighbours(values.size());  // of unknown vertices
-  for (const auto& [a, b] : topology.ends) {
-    if (a == b || known[a] == Known::Absent || known[b] == Known::Absent) continue;
-    if (known[a] == Known::No) neighbours[a].push_back(b);
-    if (known[b] == Known::No) neighbours[b].push_back(a);
-  }
-  const auto reach = [&](int v) {
-    if (row[v] >= 0) return;
-    row[v] = static_cast<int>(queue.size());
-    queue.push_back(v);
-  };
-  int unknown = 0;
-  for (int v = 0; v < topology.vertex_count; ++v) {
-    if (known[v] != Known::No) continue;
-    ++unknown;
-    for (const int w : neighbours[v])
-      if (known[w] == Known::Yes) reach(v);
-  }
-  for (std::size_t i = 0; i < queue.size(); ++i)
-    for (const int w : neighbours[queue[i]])
-      if (known[w] == Known::No) reach(w);
-  if (queue.empty()) return unknown;
-
-  const auto size = static_cast<Eigen::Index>(queue.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(size, 3);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const std::vector<int>& around = neighbours[queue[i]];
-    entries.emplace_back(i, i, static_cast<double>(around.size()));
-    for (const int w : around) {
-      if (known[w] == Known::Yes)
-        right.row(i) += values[w].transpose();
-      else
-        entries.emplace_back(i, row[w], -1.0);
-    }
-  }
-  Eigen::SparseMatrix<double> laplacian(size, size);
-  laplacian.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
-  if (solver.info() != Eigen::Success) throw Error(ErrorCode::Internal, "the harmonic extension has no solution");
-  const Eigen::MatrixX3d solution = solver.solve(right);
-  for (Eigen::Index i = 0; i < size; ++i) values[queue[i]] = solution.row(i).transpose();
-  return unknown - static_cast<int>(size);
-}
-
 void place_vertices(const MeshTopology& topology, OperationVertices where, const std::vector<char>& placed, const std::vector<Vec3>& own,
                     QuadMesh& mesh) {
   const std::size_t count = mesh.vertex_count();
@@ -113,14 +64,14 @@ void place_vertices(const MeshTopology& topology, OperationVertices where, const
       moved[v] = placed[v] ? Known::Yes : Known::No;
       if (placed[v]) way[v] = mesh.points[v] - own[v];
     }
-    extend_harmonically(topology.quads, moved, way);
+    extend_harmonically(topology.quads.ends, moved, way);
     for (std::size_t v = 0; v < count; ++v)
       if (moved[v] == Known::No) mesh.points[v] = own[v] + way[v];
   } else {
     for (std::size_t v = 0; v < count; ++v)
       if (!placed[v] && known[v] == Known::Yes) mesh.points[v] = own[v];
   }
-  const int without = extend_harmonically(topology.quads, known, mesh.points);
+  const int without = extend_harmonically(topology.quads.ends, known, mesh.points);
   if (without > 0)
     throw Error(ErrorCode::InvalidInput,
                 std::to_string(without) + " vertices of an operation have no position on its level and no neighbours with one");

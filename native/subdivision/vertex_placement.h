@@ -13,17 +13,6 @@ QuadMesh own_level_mesh(const HybridMesh& hierarchy, int level);
 // The same of the final mesh.
 QuadMesh own_final_mesh(const HybridMesh& hierarchy);
 
-// What is known of a vertex's value.
-enum class Known {
-  Yes,
-  No,
-  Absent  // the vertex takes no part
-};
-
-// Makes every value that is not known the mean of its neighbours', along the edges between vertices that take part. Values without a path to a known
-// one stay as they are and are counted.
-int extend_harmonically(const QuadTopology& topology, const std::vector<Known>& known, std::vector<Vec3>& values);
-
 // Gives positions to the vertices of `mesh`, a level as own_level_mesh() gives it. `placed` says which of its points are to be kept; `own` has
 // the hierarchy's. Throws Error{InvalidInput} if there is no position for a vertex.
 void place_vertices(const MeshTopology& topology, OperationVertices where, const std::vector<char>& placed, const std::vector<Vec3>& own,

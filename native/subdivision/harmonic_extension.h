@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surface/polygon_soup.h"
+
+namespace hybrid_mesh {
+
+// What is known of a vertex's value.
+enum class Known {
+  Yes,
+  No,
+  Absent  // the vertex takes no part
+};
+
+// Makes every value that is not known the mean of its neighbours', along the edges between vertices that take part. Values without a path to a known
+// one stay as they are and are counted.
+int extend_harmonically(const std::vector<std::array<int, 2>>& edges, const std::vector<Known>& known, std::vector<Vec3>& values);
+
+}  // namespace hybrid_mesh

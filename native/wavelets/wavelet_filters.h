@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to wavelets/.
+#pragma once
+
+#include "subdivision/step_matrix.h"
+
+namespace hybrid_mesh {
+
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// W of a step, #fine x #fine in the order of StepMatrix::fine: a column for every midpoint and centre; those of corners are empty. Where subdivision
+// is that of tensor-product cubic splines, the columns are orthogonal to those of S.
+SparseRows wavelet_filters(const HybridMesh& hierarchy, const StepMatrix& step);
+
+}  // namespace hybrid_mesh
