@@ -22,7 +22,7 @@ inline double farthest(const std::vector<Vec3>& points, const std::vector<Vec3>&
   EXPECT_EQ(points.size(), expected.size());
   double most = 0;
   for (std::size_t i = 0; i < points.size(); ++i) most = std::max(most, (points[i] - expected[i]).norm());
-  return most / diagonal_of(expected);
+  return most > 0 ? most / diagonal_of(expected) : 0;
 }
 
 // Leaves of several levels.
