@@ -98,6 +98,14 @@ PolygonSoup soup_from_faces(const py::object& points, const py::object& faces) {
   return soup_from_arrays(points, to_array(offsets), array.attr("ravel")());
 }
 
+std::vector<Vec3> vectors_from_array(const py::object& object, const char* name) {
+  const auto array = numbers<double>(object, name, "fiu", "numbers");
+  if (array.ndim() != 2 || array.shape(1) != 3) refuse(std::string(name) + " must have the shape (n, 3), not " + shape_of(array));
+  std::vector<Vec3> vectors(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = Vec3(array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]);
+  return vectors;
+}
+
 py::tuple soup_to_arrays(const PolygonSoup& soup) {
   return py::make_tuple(rows_to_array<double>(soup.points), to_array(soup.offsets), to_array(soup.indices));
 }

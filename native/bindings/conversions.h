@@ -26,6 +26,9 @@ PolygonSoup soup_from_arrays(const pybind11::object& points, const pybind11::obj
 // The same with faces of as many corners each, (m, corners) indices.
 PolygonSoup soup_from_faces(const pybind11::object& points, const pybind11::object& faces);
 
+// Rows of three numbers, (n, 3), which may be none, infinite or not a number. Throws Error{InvalidInput} that names the array.
+std::vector<Vec3> vectors_from_array(const pybind11::object& array, const char* name);
+
 // (points, offsets, indices)
 pybind11::tuple soup_to_arrays(const PolygonSoup& soup);
 

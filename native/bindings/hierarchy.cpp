@@ -25,12 +25,6 @@ auto locked(const PythonHierarchy& hierarchy, Function&& function) {
   return without_gil([&] { return hierarchy.locked(function); });
 }
 
-struct Level {
-  LevelKind kind;
-  int number;
-  std::string name() const { return (kind == LevelKind::M ? "M" : "N") + std::to_string(number); }
-};
-
 // From the base to the finest. M^j is there only where an irregular operation separates it from N^j.
 std::vector<Level> levels_of(const HybridMesh& mesh) {
   const int depth = mesh.depth();
@@ -45,13 +39,6 @@ std::vector<Level> levels_of(const HybridMesh& mesh) {
     levels.push_back({LevelKind::N, j});
   }
   return levels;
-}
-
-Level find_level(const HybridMesh& mesh, const std::string& name) {
-  for (const Level& level : levels_of(mesh)) {
-    if (level.name() == name) return level;
-  }
-  throw Error(ErrorCode::InvalidInput, "there is no level " + name);
 }
 
 // Counts of a mesh for info(), and its topology.
@@ -211,6 +198,13 @@ PythonHierarchy load(const py::object& path_object) {
 }
 
 }  // namespace
+
+Level find_level(const HybridMesh& mesh, const std::string& name) {
+  for (const Level& level : levels_of(mesh)) {
+    if (level.name() == name) return level;
+  }
+  throw Error(ErrorCode::InvalidInput, "there is no level " + name);
+}
 
 void bind_hierarchy(py::module_& module) {
   using py::arg;

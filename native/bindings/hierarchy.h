@@ -13,6 +13,16 @@
 
 namespace hybrid_mesh {
 
+// A level by its name: N0, M1, N1, ...
+struct Level {
+  LevelKind kind;
+  int number;
+  std::string name() const { return (kind == LevelKind::M ? "M" : "N") + std::to_string(number); }
+};
+
+// M^j is there only where an irregular operation separates it from N^j. Throws Error{InvalidInput} if there is no such level.
+Level find_level(const HybridMesh& mesh, const std::string& name);
+
 // What Python holds of a hierarchy. Copies share it.
 class PythonHierarchy {
  public:

@@ -55,20 +55,6 @@ void read_operations(const py::object& operations, Request& request) {
   request.operations = std::move(chosen);
 }
 
-std::vector<Vec3> read_points(const py::object& object) {
-  if (object.is_none()) return {};
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
-  if (!array) {
-    PyErr_Clear();
-    refuse("points is no array of numbers");
-  }
-  if (array.ndim() != 2 || array.shape(1) != 3) refuse("points must have the shape (n, 3), not " + py::str(array.attr("shape")).cast<std::string>());
-  std::vector<Vec3> points(static_cast<std::size_t>(array.shape(0)));
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = Vec3(array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]);
-  if (points.empty()) refuse("points is empty");
-  return points;
-}
-
 template <class Enum>
 Enum read_word(const char* name, const std::string& word, const std::vector<std::pair<const char*, Enum>>& words) {
   std::string all;
@@ -123,7 +109,10 @@ py::dict subdivide_level(const PythonHierarchy& hierarchy, int from_level, int t
   request.limit = limit;
   request.creases = std::move(creases);
   request.corners = std::move(corners);
-  request.points = read_points(points);
+  if (!points.is_none()) {
+    request.points = vectors_from_array(points, "points");
+    if (request.points.empty()) refuse("points is empty");
+  }
   read_operations(operations, request);
   request.options.rules.boundary =
       read_word<BoundaryRule>("boundary", boundary, {{"edges", BoundaryRule::EdgesOnly}, {"edges_and_corners", BoundaryRule::EdgesAndCorners}});

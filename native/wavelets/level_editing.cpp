@@ -85,7 +85,7 @@ MovedMesh joined(QuadMesh inner, const MovedMesh& outer) {
   std::vector<int> place(result.after.size());
   for (std::size_t v = 0; v < place.size(); ++v) {
     place[v] = find(result.mesh.vertex[v]);
-    if (place[v] >= 0) result.after[v] = outer.after[place[v]];
+    if (place[v] >= 0 && outer.mesh.points[place[v]] != outer.after[place[v]]) result.after[v] = outer.after[place[v]];
   }
   move_regions(result.mesh, place, outer.mesh, outer.after, result.after);
   return result;
