@@ -136,6 +136,13 @@ py::dict level(const PythonHierarchy& hierarchy, const std::string& name) {
   }));
 }
 
+py::array_t<double> level_points(const PythonHierarchy& hierarchy, const std::string& name) {
+  return rows_to_array<double>(locked(hierarchy, [&](const HybridMesh& mesh) {
+    const Level level = find_level(mesh, name);
+    return mesh.level_mesh(level.number, level.kind).points;
+  }));
+}
+
 py::dict final_mesh(const PythonHierarchy& hierarchy) {
   return to_dict(without_gil([&] { return hierarchy.annotated([](const HybridMesh& mesh) { return mesh.final_mesh(); }); }));
 }
@@ -213,6 +220,7 @@ void bind_hierarchy(py::module_& module) {
       .def("level", &level, arg("name"),
            "The mesh of a level, as a dict of arrays. Where there are sharp edges, `sharp` says for each corner whether the edge to the face's next "
            "one is one.")
+      .def("level_points", &level_points, arg("name"), "The points of a level alone, (n, 3), as level(name) has them: in a fraction of the time.")
       .def("final_mesh", &final_mesh, "The remesh, as a dict of arrays.")
       .def_property_readonly(
           "operation_count",

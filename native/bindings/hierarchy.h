@@ -58,6 +58,15 @@ class PythonHierarchy {
     shared_->sources.reset();
   }
 
+  // The same with function(const HybridMesh&) that has positions elsewhere.
+  template <typename Function>
+  void edit(Function&& function) {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->mesh = std::make_shared<const HybridMesh>(function(*shared_->mesh));
+    shared_->notes.edited = true;
+    shared_->sources.reset();
+  }
+
   // The hierarchy as it is now.
   std::pair<std::shared_ptr<const HybridMesh>, RootNotes> snapshot() const {
     const std::lock_guard lock(shared_->mutex);
@@ -79,7 +88,7 @@ class PythonHierarchy {
   template <typename Make>
   AnnotatedMesh annotated(Make&& make) const {
     const std::lock_guard lock(shared_->mutex);
-    if (!shared_->sources) shared_->sources.emplace(*shared_->mesh);
+    if (!shared_->sources) shared_->sources.emplace(*shared_->mesh, shared_->notes.edited ? VertexPlaces::OfMaps : VertexPlaces::Nearest);
     return annotate(*shared_->mesh, *shared_->sources, shared_->notes, make(*shared_->mesh));
   }
 

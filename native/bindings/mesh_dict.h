@@ -12,10 +12,12 @@
 
 namespace hybrid_mesh {
 
-// What a remesh knows of root quads, per node, as RemeshResult has it. Nodes that came later are beyond the end of `opened`.
+// What is known of a hierarchy besides itself: of root quads, per node, what a remesh knows (as RemeshResult has it), nodes that came later being
+// beyond the end of `opened`.
 struct RootNotes {
   std::vector<int> plan_root;  // empty: there is no plan
   std::vector<int> opened;     // empty: nobody knows
+  bool edited = false;         // levels were put elsewhere than the surface is
 
   int opened_at(int node) const { return node < static_cast<int>(opened.size()) ? opened[node] : -1; }
 };

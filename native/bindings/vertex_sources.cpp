@@ -37,7 +37,7 @@ struct VertexSources::Pieces {
   }
 };
 
-VertexSources::VertexSources(const HybridMesh& hierarchy) {
+VertexSources::VertexSources(const HybridMesh& hierarchy, VertexPlaces places) {
   auto pieces = std::make_unique<Pieces>();
   pieces->first.assign(hierarchy.node_count(), -1);
   for (int node = 0; node < hierarchy.node_count(); ++node) {
@@ -52,7 +52,7 @@ VertexSources::VertexSources(const HybridMesh& hierarchy) {
       pieces->origin.emplace_back(map, static_cast<int>(t));
     }
   }
-  if (!pieces->triangles.empty()) pieces->query.emplace(pieces->points, pieces->triangles);
+  if (places == VertexPlaces::Nearest && !pieces->triangles.empty()) pieces->query.emplace(pieces->points, pieces->triangles);
   pieces_ = std::move(pieces);
 }
 
@@ -69,6 +69,7 @@ std::vector<SurfacePoint> VertexSources::operator()(const HybridMesh& hierarchy,
     sources[v] = sample.source;
     mapped[v] = pieces_->first[owner] + sample.triangle;
   }
+  if (!pieces_->query) return sources;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sources.size()), [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t v = range.begin(); v < range.end(); ++v) {
       if (mapped[v] < 0) continue;

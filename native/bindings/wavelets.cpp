@@ -21,7 +21,7 @@ void set_level(PythonHierarchy& hierarchy, const std::string& name, const py::ob
   edit.points = vectors_from_array(points, "points");
   edit.coarser = coarser ? CoarserLevels::Follow : CoarserLevels::Stay;
   run_interruptibly([&](Context& context) {
-    hierarchy.replace([&](const HybridMesh& mesh) {
+    hierarchy.edit([&](const HybridMesh& mesh) {
       const Level level = find_level(mesh, name);
       edit.level = level.number;
       edit.kind = level.kind;
@@ -89,7 +89,7 @@ coarser  whether the coarser levels follow, too
 
 Finer levels keep what they differ by from subdivision of the level before, turned and scaled as the surface turns and grows at each place. What
 is far from an edit stays as it is, byte for byte; a level that is set to what it was changes nothing. The coarser levels follow by analysis. Maps stay as
-they are. Raises InvalidInput if there is no such level or the points are too few, too many or not finite, and then nothing has changed.)";
+they are, and with them what of the original surface a point carries. Raises InvalidInput if there is no such level or the points are too few, too many or not finite, and then nothing has changed.)";
 
 constexpr const char* kAnalyse = R"(One step of the wavelet transform, from N<level> to N<level - 1>.
 

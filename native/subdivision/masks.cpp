@@ -25,6 +25,7 @@ struct FannedTopology {
 }  // namespace
 }  // namespace hybrid_mesh
 
+// NOLINTBEGIN(readability-identifier-naming): what OpenSubdiv calls has OpenSubdiv's names.
 namespace OpenSubdiv::OPENSUBDIV_VERSION::Far {
 
 using hybrid_mesh::FannedTopology;
@@ -129,6 +130,8 @@ struct MaskSum {
       found->second += weight;
   }
 };
+
+// NOLINTEND(readability-identifier-naming)
 
 // As if it were the list of all vertices.
 struct Vertices {

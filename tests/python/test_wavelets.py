@@ -76,6 +76,26 @@ def test_far_from_an_edit_nothing_changes(hierarchy):
     assert (after[name] != before[name]).any(axis=1).sum() == 1
 
 
+def test_points_alone_are_those_of_the_level(hierarchy):
+    for name in hierarchy.level_names:
+        assert np.array_equal(hierarchy.level_points(name), hierarchy.level(name)["points"])
+    with pytest.raises(_native.InvalidInput, match="there is no level"):
+        hierarchy.level_points("N99")
+
+
+def test_what_a_point_carries_goes_with_it(hierarchy):
+    edited = hierarchy.copy()
+    edited.set_level("N0", turned(hierarchy.level("N0")["points"], angle=np.pi))
+    before, after = hierarchy.level("N1"), edited.level("N1")
+    if (before["source_face"] < 0).any():
+        pytest.skip("vertices that an operation made have no map")
+    surface = before["source_face"], before["source_weights"]
+    # Not the nearest place of the surface any more, which would be on its other side; it may be a little beside it, where vertices were fitted to.
+    same = (after["source_face"] == surface[0]).mean()
+    assert same > 0.3
+    assert np.array_equal(after["uv"], before["uv"])
+
+
 def test_an_edit_is_saved(hierarchy, tmp_path):
     edited = hierarchy.copy()
     edited.set_level("N1", turned(hierarchy.level("N1")["points"]))
