@@ -33,6 +33,8 @@ CLASSES = (
     remesh_operators.HYBRID_MESH_OT_preset,
     level_operators.HYBRID_MESH_OT_show_level,
     level_operators.HYBRID_MESH_OT_show_reason,
+    level_operators.HYBRID_MESH_OT_update_levels,
+    level_operators.HYBRID_MESH_OT_reset_level,
     layout_operators.HYBRID_MESH_OT_draw_layout,
     layout_operators.HYBRID_MESH_OT_check_layout,
     layout_operators.HYBRID_MESH_OT_show_problem,

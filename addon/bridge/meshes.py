@@ -71,13 +71,13 @@ def read_source(obj, depsgraph, collect=None, density=None):
 
 def new_mesh(name, made, matrix):
     """A mesh data-block from a level's MeshDict (world space), in the space of an object with this matrix."""
-    points = transformed(made["points"], numpy.linalg.inv(matrix))
+    points = in_object(made["points"], matrix)
     offsets = numpy.asarray(made["offsets"], dtype=numpy.int64)
     indices = numpy.asarray(made["indices"], dtype=numpy.int32)
     corners = corner_order(offsets, matrix)
     mesh = bpy.data.meshes.new(name)
     mesh.vertices.add(len(points))
-    mesh.vertices.foreach_set("co", points.astype(numpy.float32).ravel())
+    mesh.vertices.foreach_set("co", points.ravel())
     mesh.loops.add(len(indices))
     mesh.loops.foreach_set("vertex_index", indices[corners])
     mesh.polygons.add(len(offsets) - 1)
@@ -94,6 +94,25 @@ def new_mesh(name, made, matrix):
     if "sharp" in made:
         mark_sharp(mesh, numpy.asarray(made["sharp"])[edge_order(offsets, matrix)])
     return mesh
+
+
+def in_object(points, matrix):
+    """Points in world space as a mesh of an object with this matrix (object to world) has them: in single precision."""
+    return transformed(points, numpy.linalg.inv(matrix)).astype(numpy.float32)
+
+
+def in_world(places, matrix):
+    """The places of a mesh's vertices in world space."""
+    return transformed(places.astype(numpy.float64), matrix)
+
+
+def set_places(mesh, places):
+    """Puts the vertices of a mesh elsewhere. Returns whether any has moved."""
+    if numpy.array_equal(values_of(mesh.vertices, "co", 3), places):
+        return False
+    mesh.vertices.foreach_set("co", numpy.ascontiguousarray(places).ravel())
+    mesh.update()
+    return True
 
 
 def corner_order(offsets, matrix):

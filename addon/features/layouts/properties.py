@@ -6,7 +6,7 @@ from bpy.props import CollectionProperty, EnumProperty, FloatProperty, FloatVect
 
 from ...bridge import objects, strokes
 from ...core.limits import limits
-from ..levels.properties import hierarchy_of
+from ..levels.properties import hierarchy_of, is_level
 
 KINDS = (
     ("NONE", "None", "Nothing to do with layouts"),
@@ -110,10 +110,6 @@ def drawn_on(surface, context):
     if active is not None and _kind(active) == "DRAWN" and active.hybrid_mesh_layout.surface == surface:
         return active
     return layout_of(surface, context.scene)
-
-
-def is_level(obj):
-    return obj is not None and obj.is_property_set("hybrid_mesh") and obj.hybrid_mesh.role == "LEVEL" and obj.hybrid_mesh.hierarchy is not None
 
 
 def _kind(obj):

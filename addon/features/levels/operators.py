@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import bpy
-from bpy.props import IntProperty
+from bpy.props import BoolProperty, IntProperty
 
 from ...bridge import levels, objects, view
 from ...core import report as reports
-from .properties import hierarchy_of, place_of, report_of
+from ...core.native import expected, explain
+from . import editing
+from .properties import hierarchy_of, is_level, place_of, report_of
 
 _SHOWN = 0.02  # of a hierarchy's diagonal: what look_at() is to show
 
@@ -60,3 +62,57 @@ class HYBRID_MESH_OT_show_reason(bpy.types.Operator):
         if preview is None or not view.look_at(context, preview, place, _SHOWN * objects.diagonal(preview)):
             self.report({"INFO"}, "There is no 3D view to turn; the 3D cursor is at the place")
         return {"FINISHED"}
+
+
+class _EditingOperator(bpy.types.Operator):
+    """Base of what is done to the active level. Subclasses have work(obj), which returns a line for people and changes nothing if it raises."""
+
+    @classmethod
+    def poll(cls, context):
+        if not is_level(objects.active(context)):
+            cls.poll_message_set("Make a level of a hierarchy the active object")
+            return False
+        return True
+
+    def work(self, obj):
+        raise NotImplementedError
+
+    def execute(self, context):
+        # What is edited in another mode is not in the mesh yet; and undo in Edit Mode knows nothing of the other levels.
+        view.to_object_mode(context)
+        try:
+            line = self.work(objects.active(context))
+        except Exception as error:
+            if not expected(error):
+                raise
+            self.report({"ERROR"}, explain(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, line)
+        return {"FINISHED"}
+
+
+class HYBRID_MESH_OT_update_levels(_EditingOperator):
+    """Carry what was edited of this level to the finer levels and the preview. They keep their details, which turn with the surface"""
+
+    bl_idname = "hybrid_mesh.update_levels"
+    bl_label = "Update Levels"
+    bl_options = {"REGISTER", "UNDO"}
+
+    coarser: BoolProperty(name="Coarser Levels Too", description="The coarser levels follow as well", default=False)
+
+    def work(self, obj):
+        changed = editing.update(obj, self.coarser)
+        return f"{obj.name}: {'one other level has' if changed == 1 else f'{changed} other levels have'} followed"
+
+
+class HYBRID_MESH_OT_reset_level(_EditingOperator):
+    """Take back what was edited of this level since the levels were last updated"""
+
+    bl_idname = "hybrid_mesh.reset_level"
+    bl_label = "Reset Level"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def work(self, obj):
+        if not editing.reset(obj):
+            raise ValueError(f"{obj.name} is as it was: there is nothing to take back")
+        return f"{obj.name} is as it was"

@@ -27,6 +27,10 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
         preview = collection.hybrid_mesh.preview
         if preview is not None:
             levels.draw_level(layout, preview)
+        if properties.is_level(context.object):
+            row = layout.row(align=True)
+            row.operator("hybrid_mesh.update_levels")
+            row.operator("hybrid_mesh.reset_level")
         self._verdict(context, layout, report)
         self._quality(layout, properties.quality_of(collection))
         self._levels(layout, report)

@@ -57,11 +57,15 @@ def describe(built, source, report, plan="", operations=()):
     built.preview.hybrid_mesh.hierarchy = built.collection
 
 
+def is_level(obj):
+    # Asked first, because reading a property group that was never set leaves an empty one behind.
+    return obj is not None and obj.is_property_set("hybrid_mesh") and obj.hybrid_mesh.role == "LEVEL" and obj.hybrid_mesh.hierarchy is not None
+
+
 def hierarchy_of(obj):
     """The hierarchy collection that an object belongs to or was the latest source of, or None."""
     if obj is None:
         return None
-    # Asked first, because reading a property group that was never set leaves an empty one behind.
     if obj.is_property_set("hybrid_mesh") and obj.hybrid_mesh.hierarchy is not None:
         return obj.hybrid_mesh.hierarchy
     hierarchies = (collection for collection in bpy.data.collections if collection.is_property_set("hybrid_mesh"))
