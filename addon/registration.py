@@ -13,6 +13,7 @@ from .features.layouts import region_operator
 from .features.levels import operators as level_operators
 from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
+from .features.levels import stored as stored_levels
 from .features.remesh import operators as remesh_operators
 from .features.remesh import panel as remesh_panel
 from .features.remesh import properties as remesh_properties
@@ -69,6 +70,8 @@ def register():
             undo.callback(delattr, owner, name)
         jobs.register()
         undo.callback(jobs.unregister)
+        stored_levels.register()
+        undo.callback(stored_levels.unregister)
         undo.callback(compat.unregister_command_line, compat.register_command_line("hybrid_mesh", _run_command_line))
         _registered.enter_context(undo.pop_all())
 

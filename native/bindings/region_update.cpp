@@ -19,6 +19,9 @@ namespace {
 
 RegionUpdate repatch(PythonHierarchy hierarchy, const Plan::Region& region, Context& context) {
   const auto [mesh, notes] = hierarchy.snapshot();
+  if (notes.edited)
+    throw Error(ErrorCode::Unsupported,
+                "levels of the hierarchy were edited, and new quads would lie where the surface is: lay regions out before levels are edited");
   RegionUpdate update = repatch_hierarchy(*mesh, root_numbers(*mesh, notes.plan_root), region, Progress(context));
   if (!hierarchy.replace(mesh, std::make_shared<const HybridMesh>(std::move(update.hierarchy)), std::move(update.root_numbers)))
     throw Error(ErrorCode::InvalidInput, "the hierarchy was changed while a region of it was laid out anew: nothing was done");
@@ -53,7 +56,7 @@ operation is one of a plan's "operations", a dict or JSON text: the level, the a
 may have operations, and none of the quads may have been put in by another operation of the level. Returns a dict: operation, its number; levels, the vertices and quads of that
 level and all finer ones; energy_before and energy_after, of the maps of
 the region and of the rings around it beyond an isometry's, in quads of mean size: the region is better only where that has fallen. Raises InvalidInput, LayoutError or Unsupported with the
-reason if it cannot be done, and then nothing has changed.)";
+reason if it cannot be done, as where levels were edited, and then nothing has changed.)";
 
 }  // namespace
 

@@ -193,7 +193,7 @@ def test_what_cannot_be_done_is_said(world, edited):
     bpy.ops.object.mode_set(mode="OBJECT")
     refused(bpy.ops.hybrid_mesh.update_levels, "vertices, its level has")
     module("features.levels.kept").forget()
-    refused(bpy.ops.hybrid_mesh.update_levels, "another session")
+    refused(bpy.ops.hybrid_mesh.update_levels, "did not save it")
     world.select(preview)
     assert not bpy.ops.hybrid_mesh.update_levels.poll() and not bpy.ops.hybrid_mesh.reset_level.poll()
 
@@ -223,3 +223,65 @@ def test_an_operation_goes_with_its_surroundings(world):
     activate(world, levels["M1"])
     assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
     assert numpy.abs(places(levels["N1"]) - before["N1"] @ rotation.T - (1, 0, 0)).max() < 1e-5
+
+
+def reopened(tmp_path):
+    path = str(tmp_path / "levels.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    module("features.levels.kept").forget()
+    bpy.ops.wm.open_mainfile(filepath=path)
+
+
+def test_a_reopened_file_goes_on(world, edited, tmp_path):
+    levels, _ = edited
+    names = {name: obj.name for name, obj in levels.items()}
+    bump = places(levels["N2"])
+    bump[7] += (0.3, 0, 0)
+    activate(world, levels["N2"])
+    move(levels["N2"], lambda _: bump)
+    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    # What was edited and not carried is so still.
+    move(levels["N1"], lambda points: points + (0, 0, 1))
+    before = {name: places(obj) for name, obj in levels.items()}
+    reopened(tmp_path)
+    levels = {name: bpy.data.objects[obj] for name, obj in names.items()}
+    assert all(numpy.array_equal(places(obj), before[name]) for name, obj in levels.items())
+    activate(world, levels["N1"])
+    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    assert numpy.abs(places(levels["N2"]) - bump - (0, 0, 1)).max() < 1e-5
+    # And once more: what is in the file is what was kept last.
+    reopened(tmp_path)
+    levels = {name: bpy.data.objects[obj] for name, obj in names.items()}
+    activate(world, levels["N0"])
+    move(levels["N0"], lambda points: points + (0, 1, 0))
+    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    assert numpy.abs(places(levels["N2"]) - bump - (0, 1, 1)).max() < 1e-5
+
+
+def test_no_region_of_edited_levels_is_laid_out_anew(world, edited, tmp_path):
+    levels, _ = edited
+    name = levels["N1"].name
+    levels["N1"].data.polygons[0].select = True
+    move(levels["N1"], lambda points: points + (0, 0, 1))
+    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    refused(bpy.ops.hybrid_mesh.repatch_region, "its levels were edited", layout_kind="AUTOMATIC")
+    reopened(tmp_path)
+    activate(world, bpy.data.objects[name])
+    refused(bpy.ops.hybrid_mesh.repatch_region, "its levels were edited", layout_kind="AUTOMATIC")
+
+
+def test_a_damaged_hierarchy_in_a_file_is_none(world, edited, tmp_path):
+    levels, _ = edited
+    name = levels["N1"].name
+    path = str(tmp_path / "levels.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    collection = levels["N1"].hybrid_mesh.hierarchy
+    data = collection["hybrid_mesh_hierarchy"]
+    for damaged in (b"", data[: len(data) // 2], b"\xff" * 1000, "text"):
+        collection["hybrid_mesh_hierarchy"] = damaged
+        module("features.levels.kept").forget()
+        world.select(bpy.data.objects[name])
+        refused(bpy.ops.hybrid_mesh.update_levels, "did not save it")
+    collection["hybrid_mesh_hierarchy"] = data
+    refused(bpy.ops.hybrid_mesh.update_levels, "is as it was")

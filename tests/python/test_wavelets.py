@@ -174,3 +174,14 @@ def test_what_cannot_be_done_is_refused(hierarchy):
         hierarchy.synthesise(1, step["coarse"], step["details"][:-1])
     with pytest.raises(_native.InvalidInput, match="coarse positions"):
         hierarchy.synthesise(1, step["coarse"][:-1], step["details"])
+
+
+def test_no_region_of_an_edited_hierarchy_is_laid_out_anew():
+    hierarchy = _native.remesh(*torus(), {"vertices": 2000}).hierarchy
+    edited = hierarchy.copy()
+    edited.set_level("N0", turned(hierarchy.level("N0")["points"]))
+    operation = {"level": 1, "quads": ["0.0", "0.1"], "layout": "automatic", "buffer_rings": 1}
+    for changed in (edited, edited.copy()):
+        with pytest.raises(_native.Unsupported, match="were edited"):
+            changed.repatch(operation)
+    assert hierarchy.repatch(operation)["operation"] == 0

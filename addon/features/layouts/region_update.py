@@ -16,7 +16,9 @@ def prepare(collection, operation, plan):
     """An Update of a hierarchy by one more operation; None where it is not at hand, or the operation changes quads that another one of its level has put there: then its source is
     remeshed with the plan and the operation."""
     at_hand = kept.find(collection)
-    if at_hand is None or not all("." in address for address in operation["quads"]):
+    if at_hand is not None and at_hand.edited:
+        raise ValueError(f"{collection.name}: its levels were edited, and new quads would lie where the surface is: lay regions out before levels are edited")
+    if at_hand is None or at_hand.source is None or not all("." in address for address in operation["quads"]):
         return None
     return Update(at_hand, at_hand.hierarchy.copy(), operation, plan, hierarchy_properties.report_of(collection))
 

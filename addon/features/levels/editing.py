@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Levels whose objects were edited: the others follow, or it is taken back."""
 
+from dataclasses import replace
+
 import numpy
 
 from ...bridge import meshes, objects
@@ -26,7 +28,7 @@ def update(level, coarser):
     hierarchy.set_level(level.hybrid_mesh.level, points, coarser=coarser)
     # The level itself, too: on the way to world space and back its places may be rounded.
     changed = [obj for obj in shown.objects if shown.show(obj, hierarchy) and obj != level]
-    kept.keep(collection, kept.Kept(hierarchy, at_hand.source, at_hand.settings, at_hand.repaired))
+    kept.keep(collection, replace(at_hand, hierarchy=hierarchy, edited=True))
     return len(changed)
 
 
@@ -40,7 +42,7 @@ def reset(level):
 def _at_hand(collection):
     found = kept.find(collection)
     if found is None:
-        raise ValueError(f"{collection.name} comes of another session, or of long ago: remesh its source again to edit its levels")
+        raise ValueError(f"{collection.name} comes of a session that did not save it, or of long ago: remesh its source again to edit its levels")
     return found
 
 
@@ -48,7 +50,7 @@ class _Shown:
     """The level objects of a hierarchy beside the native one that they show, as it was before."""
 
     def __init__(self, collection, at_hand, level):
-        self._hierarchy, self._matrix = at_hand.hierarchy, at_hand.source.matrix
+        self._hierarchy, self._matrix = at_hand.hierarchy, at_hand.matrix
         self._points = {}
         names = at_hand.hierarchy.level_names
         by_level = {}

@@ -34,7 +34,8 @@ class HybridMeshCollection(bpy.types.PropertyGroup):
         default=[float(i % 5 == 0) for i in range(16)],
     )  # fmt: skip
     operations: StringProperty(name="Operations", description="The irregular operations, as JSON: where they are and what quads they put there")
-    token: StringProperty(name="Token", description="Names the native hierarchy while Blender runs", options={"HIDDEN"})
+    token: StringProperty(name="Token", description="Names the native hierarchy", options={"HIDDEN"})
+    stored: StringProperty(name="Stored", description="The token of the native hierarchy that is in the file", options={"HIDDEN"})
     plan: PointerProperty(name="Plan", type=bpy.types.Text, description="What was decided, as JSON; a remesh can be given it again")
 
 

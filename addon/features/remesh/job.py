@@ -105,7 +105,7 @@ def build_hierarchy(context, obj, result, source, settings):
         report["settings"] = settings.reported()
         hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
         levels.show_preview_only(built)
-        kept.keep(built.collection, kept.Kept(hierarchy, source, settings, repaired))
+        kept.keep(built.collection, kept.Kept(hierarchy, source.matrix, source=source, settings=settings, repaired=repaired))
     except BaseException:
         _remove(built)
         raise
