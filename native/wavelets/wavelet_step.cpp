@@ -169,7 +169,7 @@ const std::vector<DetailVertex>& WaveletStep::details() const { return parts_->d
 
 std::vector<Vec3> WaveletStep::synthesise(const LevelAnalysis& analysis) const {
   const Parts& parts = *parts_;
-  const auto& [coarse, details, remainder] = analysis;
+  const std::vector<Vec3>&coarse = analysis.coarse, &details = analysis.details, &remainder = analysis.remainder;
   check_points(coarse, parts.coarse.vertex_count(), "coarse positions");
   check_points(details, parts.details.size(), "details");
   if (!remainder.empty()) check_points(remainder, parts.fine.vertex_count(), "remainders");

@@ -76,6 +76,32 @@ def test_far_from_an_edit_nothing_changes(hierarchy):
     assert (after[name] != before[name]).any(axis=1).sum() == 1
 
 
+def normals(mesh):
+    corners = mesh["points"][mesh["indices"].reshape(-1, 4)]
+    across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    return across / np.linalg.norm(across, axis=1)[:, None]
+
+
+def test_details_turn_where_a_level_is_bent():
+    hierarchy = _native.remesh(*torus(), {"vertices": 3000}).hierarchy
+
+    def bent(points):
+        angle = 0.3 * points[:, :1]
+        c, s = np.cos(angle), np.sin(angle)
+        # Turned about the x axis, the more the farther out.
+        return np.hstack([points[:, :1], c * points[:, 1:2] - s * points[:, 2:], s * points[:, 1:2] + c * points[:, 2:]])
+
+    edited = hierarchy.copy()
+    edited.set_level("N1", bent(hierarchy.level_points("N1")))
+    before, after = hierarchy.final_mesh(), edited.final_mesh()
+    wanted = {**before, "points": bent(before["points"])}
+    assert distance(after["points"], wanted["points"]) < 0.01
+    deviation = np.degrees(np.arccos(np.clip((normals(after) * normals(wanted)).sum(axis=1), -1, 1)))
+    assert np.median(deviation) < 1 and deviation.max() < 15
+    # Without turning they would be off by as much as the surface turns.
+    assert np.degrees(np.arccos(np.clip((normals(before) * normals(wanted)).sum(axis=1), -1, 1))).max() > 15
+
+
 def test_points_alone_are_those_of_the_level(hierarchy):
     for name in hierarchy.level_names:
         assert np.array_equal(hierarchy.level_points(name), hierarchy.level(name)["points"])

@@ -74,7 +74,9 @@ inline PointMap reference_step(const HybridMesh& hierarchy, const QuadMesh& mesh
     if (edge.faces.size() == 2) smooth = middle / 2 + (edge.faces[0] + edge.faces[1]) / 4;
     result[VertexId(VertexId::Kind::Edge, e)] = sharp * middle + (1 - sharp) * smooth;
   }
-  for (const auto& [id, vertex] : vertices) {
+  for (const auto& entry : vertices) {
+    const VertexId id = entry.first;
+    const Vertex& vertex = entry.second;
     double own = given(sharpness.vertices, id);
     if (const double left = finer_sharpness(own); left > 0) finer.vertices[id] = left;
     if (vertex.faces.size() == 1 && vertex.edges.size() == 2 && boundary == BoundaryRule::EdgesAndCorners) own = 1e9;

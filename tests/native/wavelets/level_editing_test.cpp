@@ -113,7 +113,8 @@ TEST(LevelEditing, FarFromAnEditNothingChanges) {
     // Where a vertex lies on the torus, in base quads.
     const auto place = [](const QuadMesh& of, std::size_t vertex) {
       const MapLocation& location = of.location[vertex];
-      return Vec2(location.node % 8 + location.u, location.node / 8 + location.v);
+      const int column = location.node % 8, row = location.node / 8;
+      return Vec2(column + location.u, row + location.v);
     };
     for (std::size_t i = 0; i < before.size(); ++i) {
       int moved = 0;
