@@ -279,9 +279,11 @@ def test_a_damaged_hierarchy_in_a_file_is_none(world, edited, tmp_path):
     collection = levels["N1"].hybrid_mesh.hierarchy
     data = collection["hybrid_mesh_hierarchy"]
     for damaged in (b"", data[: len(data) // 2], b"\xff" * 1000, "text"):
+        del collection["hybrid_mesh_hierarchy"]
         collection["hybrid_mesh_hierarchy"] = damaged
         module("features.levels.kept").forget()
         world.select(bpy.data.objects[name])
         refused(bpy.ops.hybrid_mesh.update_levels, "did not save it")
+    del collection["hybrid_mesh_hierarchy"]
     collection["hybrid_mesh_hierarchy"] = data
     refused(bpy.ops.hybrid_mesh.update_levels, "is as it was")

@@ -35,7 +35,10 @@ def _before_save(*_):
         token = collection.hybrid_mesh.token
         at_hand = kept.of_token(token)
         if at_hand is not None and collection.hybrid_mesh.stored != token:
-            collection[_KEY] = _bytes_of(at_hand)
+            data = _bytes_of(at_hand)
+            if _KEY in collection:
+                del collection[_KEY]  # Blender 5.0 writes bytes over others up to the first zero alone.
+            collection[_KEY] = data
             collection.hybrid_mesh.stored = token
 
 
