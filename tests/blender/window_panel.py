@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels draw, before and after a remesh, with a poor result, for a region of a level, and with a list of loops; the preview's level changes what the view shows."""
+"""The sidebar panels draw, before and after a remesh, with a poor result, for a region of a level, an edited level, and with a list of loops; the preview's level changes what the view shows."""
 
 import json
 import os
@@ -13,6 +13,7 @@ import stepper  # noqa: E402
 from hybrid_mesh import jobs, registration  # noqa: E402
 from hybrid_mesh.bridge import levels  # noqa: E402
 from hybrid_mesh.features.layouts import panel as layout_panel  # noqa: E402
+from hybrid_mesh.features.remesh import panel as remesh_panel  # noqa: E402
 from hybrid_mesh.features.topology import panel as topology_panel  # noqa: E402
 
 
@@ -63,6 +64,26 @@ def steps():
     level = levels_of(preview)[1]
     level.hide_set(False)
     bpy.context.view_layer.objects.active = level
+    # Edited, and the other levels follow.
+    bpy.utils.unregister_class(remesh_panel.HYBRID_MESH_PT_advanced)
+    bpy.utils.unregister_class(remesh_panel.HYBRID_MESH_PT_remesh)
+    height = preview.dimensions.z
+    for vertex in level.data.vertices:
+        vertex.co.z *= 2
+    levels.set_level(preview, 3)
+    with bpy.context.temp_override(**stepper.view()):
+        assert bpy.ops.hybrid_mesh.update_levels("INVOKE_DEFAULT", True) == {"FINISHED"}
+        bpy.ops.view3d.view_selected()
+    yield 2
+    stepper.screenshot("panel_edited")
+    assert abs(preview.dimensions.z / height - 2) < 0.2
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.ops.ed.undo()
+    yield 0.5
+    preview = bpy.data.objects["sphere.preview"]
+    assert abs(preview.dimensions.z / height - 1) < 0.2
+    for cls in (remesh_panel.HYBRID_MESH_PT_remesh, remesh_panel.HYBRID_MESH_PT_advanced):
+        bpy.utils.register_class(cls)
     # Alone, so that it is not below the window's edge.
     for cls in reversed(panels):
         bpy.utils.unregister_class(cls)
