@@ -114,7 +114,9 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   origin.script = map->script;
   const auto made_with = [&](std::int64_t most_quads, bool skin) {
     LateTopology late;
-    Candidate c = assemble_candidate(task, working, *map, origin, [&](Construction& made) {
+    // What quads need is no part of a plan, which could not make the base again.
+    const std::optional<Plan::Origin> again = task.need ? std::nullopt : std::optional(origin);
+    Candidate c = assemble_candidate(task, working, *map, again, [&](Construction& made) {
       if (!working.features.empty()) return std::vector<Plan::Region>();  // a region's quads would not keep them
       std::vector<Plan::Region> regions = grow_skin(made, task, skin ? skin_options(task, budget, base, request) : SkinOptions());
       late = open_late(made, task, most_quads);
@@ -249,7 +251,7 @@ const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int
     surface_ = {};  // what it took is free for the next one
     const auto make = [&](bool all_of_cut) {
       surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
-                                      feature_options(features, angle), task.source.density.sizes);
+                                      feature_options(features, angle), task.sizes());
     };
     make(false);
     if (const std::optional<Vec3>& mirror = task.source.mirror) {

@@ -36,6 +36,7 @@ struct Candidate {
   std::vector<std::pair<int, std::string>> unopened;         // events of the topology that found no room above the base, and why
   std::vector<std::string> waited;                           // per event: why it opened no sooner; empty with a plan
   bool keeps_features = false;                               // are sharp edges of the surface sides of the base?
+  bool by_need = false;                                      // are its quads smaller where an earlier mesh was poor?
   std::string lost_operations;                               // of a half: why it has no irregular operations, where it would have some
   std::string lost_features;                                 // why they are not; empty: they are, or there are none
 

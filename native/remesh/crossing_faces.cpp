@@ -30,6 +30,9 @@ CrossingFaces crossing(const std::vector<Vec3>& points, const std::vector<std::a
   return pairs;
 }
 
+// A quad that runs through another is as bad as so many that are inverted, which the next fit may mend.
+constexpr std::size_t kWorse = 4;
+
 // What part of their way from `before` vertices go, tried out step by step.
 class TakingBack {
  public:
@@ -37,8 +40,9 @@ class TakingBack {
       : mesh_(mesh), before_(before), after_(mesh.points), progress_(progress), moved_(before.size(), 0) {}
 
   TakenBack run() {
-    // The first ones take the least that is needed; at last vertices are where they were.
-    constexpr std::array<double, 7> shorter{0.6, 0.6, 0.6, 0.6, 0.5, 0.5, 0};
+    // The first ones take the least that is needed; at last vertices are where they were, until what crosses there crossed before.
+    constexpr std::array<double, 6> shorter{0.6, 0.6, 0.6, 0.6, 0.5, 0.5};
+    constexpr std::size_t most_steps = 16;
     std::vector<double> part(before_.size(), 1);
     CrossingFaces pairs = crossing_faces(mesh_, progress_);
     if (pairs.empty()) return {};
@@ -47,16 +51,25 @@ class TakingBack {
       for (const int v : around(pairs)) moved_[v] = 1;
     };
     keep();
-    for (const double factor : shorter) {
-      for (const int v : around(pairs)) part[v] *= factor;
+    for (std::size_t k = 0; k < most_steps && !pairs.empty(); ++k) {
+      bool any = false;
+      for (const int v : around(pairs)) {
+        any |= part[v] > 0;
+        part[v] *= k < shorter.size() ? shorter[k] : 0;
+      }
+      if (!any) break;
       place(part);
       pairs = crossing_near_moved();
       keep();
-      if (pairs.empty()) break;
     }
-    std::size_t left = 0;
-    place(best_of_each_knot(left));
-    return {true, left};
+    // Knots that never crossed as far as both went may do so now.
+    part = best_of_each_knot();
+    place(part);
+    pairs = crossing_near_moved();
+    keep();
+    const auto best = std::min_element(steps_.begin(), steps_.end(), [&](const Step& a, const Step& b) { return badness(a) < badness(b); });
+    place(best->part);
+    return {true, badness(*best)};
   }
 
  private:
@@ -65,6 +78,8 @@ class TakingBack {
     CrossingFaces pairs;
     std::vector<int> inverted;
   };
+
+  static std::size_t badness(const Step& step) { return kWorse * step.pairs.size() + step.inverted.size(); }
 
   template <class Body>
   void for_vertices_of(std::size_t f, const Body& body) const {
@@ -140,22 +155,21 @@ class TakingBack {
     return sets;
   }
 
-  std::vector<double> best_of_each_knot(std::size_t& left) const {
+  std::vector<double> best_of_each_knot() const {
     DisjointSets sets = knots();
-    std::map<int, std::vector<int>> bad;  // of each knot, per step
+    std::map<int, std::vector<std::size_t>> bad;  // of each knot, per step
     for (std::size_t k = 0; k < steps_.size(); ++k) {
-      const auto count = [&](int f) {
+      const auto count = [&](int f, std::size_t weight) {
         const int v = moved_vertex(f);
-        if (v >= 0) bad.try_emplace(sets.find(v), std::vector<int>(steps_.size(), 0)).first->second[k] += 1;
+        if (v >= 0) bad.try_emplace(sets.find(v), std::vector<std::size_t>(steps_.size(), 0)).first->second[k] += weight;
       };
-      for (const auto& [faces, place] : steps_[k].pairs) count(faces.first);
-      for (const int f : steps_[k].inverted) count(f);
+      for (const auto& [faces, place] : steps_[k].pairs) count(faces.first, kWorse);
+      for (const int f : steps_[k].inverted) count(f, 1);
     }
-    for (const auto& [knot, of_knot] : bad) left += *std::min_element(of_knot.begin(), of_knot.end());
     std::vector<double> part(before_.size(), 1);
     for (std::size_t v = 0; v < part.size(); ++v) {
       if (!moved_[v]) continue;
-      const std::vector<int>& of_knot = bad.at(sets.find(static_cast<int>(v)));
+      const std::vector<std::size_t>& of_knot = bad.at(sets.find(static_cast<int>(v)));
       part[v] = steps_[std::min_element(of_knot.begin(), of_knot.end()) - of_knot.begin()].part[v];
     }
     return part;

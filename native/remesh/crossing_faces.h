@@ -17,10 +17,10 @@ using CrossingFaces = std::map<std::pair<int, int>, Vec3>;
 CrossingFaces crossing_faces(const QuadMesh& mesh, const Progress& progress);
 
 // Where faces run through one another, vertices around them go back part of their way from `before`: in each knot of such faces as far as leaves the
-// fewest that cross or are inverted. Returns how many these are, pairs and faces; 0 with nothing changed if nothing crosses.
+// fewest that cross or are inverted.
 struct TakenBack {
-  bool any = false;      // crossed
-  std::size_t left = 0;  // pairs that cross, and inverted faces around those that did
+  bool any = false;      // faces crossed; else nothing is changed
+  std::size_t left = 0;  // what still does, and what is inverted, by how bad it is
 };
 TakenBack take_back_crossings(QuadMesh& mesh, const std::vector<Vec3>& before, const Progress& progress);
 

@@ -72,6 +72,15 @@ double median(std::vector<double> values) {
 
 double size_at_density(double value) { return std::pow(kMostFactor, 1 - 2 * std::clamp(value, 0.0, 1.0)); }
 
+std::shared_ptr<const SizeField> gradual_sizes(const TriangleSurface& placed, std::vector<double> size) {
+  const double slope = kSlope * std::sqrt(kQuadsOfSlope / surface_area(placed));
+  // Sizes that a surface has on average are 1.
+  const SizeField steep(placed, size);
+  const double mean = 1 / (steep.fineness(placed.points.front()) * size.front());
+  for (double& s : size) s *= mean;
+  return std::make_shared<const SizeField>(placed, graded(placed, std::move(size), slope));
+}
+
 Density read_density(const PolygonSoup& input, const std::string& name, const TriangleSurface& repaired, const Placement& placement) {
   Density density;
   if (name.empty() && input.density.empty()) return density;
@@ -88,11 +97,7 @@ Density read_density(const PolygonSoup& input, const std::string& name, const Tr
   const TriangleSurface placed = placement.to_unit(repaired);
   density.wanted = std::make_shared<const SizeField>(placed, size);
   if (density.largest <= kSame * density.smallest) return density;
-  const double slope = kSlope * std::sqrt(kQuadsOfSlope / surface_area(placed));
-  // Sizes that a surface has on average are 1.
-  const double mean = 1 / (density.wanted->fineness(placed.points.front()) * size.front());
-  for (double& s : size) s *= mean;
-  density.sizes = std::make_shared<const SizeField>(placed, graded(placed, std::move(size), slope));
+  density.sizes = gradual_sizes(placed, std::move(size));
   return density;
 }
 

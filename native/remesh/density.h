@@ -28,6 +28,9 @@ struct Density {
   std::shared_ptr<const SizeField> sizes;   // what is made: the same, but no steeper than quads can follow. None: sizes are even
 };
 
+// Sizes per point of a placed surface, beside one another, as a field that grows no faster than quads can follow; what is small stays.
+std::shared_ptr<const SizeField> gradual_sizes(const TriangleSurface& placed, std::vector<double> size);
+
 // `name`: of the attribute that `input.density` holds. Points that repair merged have their mean, and what it cut apart has what was there. Throws
 // Error{InvalidInput} with the name where values are not one a point, or not finite.
 Density read_density(const PolygonSoup& input, const std::string& name, const TriangleSurface& repaired, const Placement& placement);

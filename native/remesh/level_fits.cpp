@@ -61,7 +61,7 @@ class ClosedSurfaces {
 };
 
 SurfaceFitOptions sized(SurfaceFitOptions options, const RemeshTask& task) {
-  options.sizes = task.source.density.sizes.get();
+  options.sizes = task.sizes().get();
   return options;
 }
 
@@ -103,7 +103,7 @@ void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
   // An error bound alone asks for as few vertices as meet it, however many that are.
   adaptive.vertices = task.options.error > 0 && task.options.vertices == 0 ? 0 : vertices;
   adaptive.error = task.options.error;
-  adaptive.sizes = task.source.density.sizes.get();
+  adaptive.sizes = task.sizes().get();
   if (task.source.half) adaptive.cut_euler = task.source.half->cut_euler;
   if (task.options.levels >= 0) adaptive.deepest = task.options.levels;
   c.final_mesh = refine_adaptively(c.hierarchy, *task.source.reference, adaptive, task.progress.part(0.55, 0.8));

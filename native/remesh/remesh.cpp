@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/limits.h"
 #include "remesh/candidate.h"
 #include "remesh/error_search.h"
 #include "remesh/level_fits.h"
+#include "remesh/need.h"
 #include "remesh/protrusion.h"
 #include "remesh/quality.h"
 #include "remesh/report.h"
@@ -107,13 +109,26 @@ CandidateSearch best_for(const RemeshTask& task, const Target& target, bool anot
 
 // Between sharp sides quads may have no room. A mesh of which so many quads are inverted is compared with one without sharp sides.
 constexpr double kManyInverted = 0.005;
+// ... and of so many no other base between the same sides is tried.
+constexpr double kHopeless = 0.05;
 
 double inverted(const Candidate& c) { return quad_quality(c.final_mesh).inverted; }
 
-// What counts against a mesh: what makes it poor, then distance, and a good deal more of it where quads are inverted.
-std::pair<std::size_t, double> badness(const RemeshTask& task, const Candidate& c) {
+// What counts against a mesh: how bad what makes it poor is, then distance, and a good deal more of it where quads are inverted.
+struct Badness {
+  double severity = std::numeric_limits<double>::infinity(), distance = 0;  // of what was not found
+  bool quads_are_too_large = false;                                         // somewhere
+  bool operator<(const Badness& o) const { return std::tie(severity, distance) < std::tie(o.severity, o.distance); }
+};
+Badness badness(const RemeshTask& task, const Candidate& c) {
   constexpr double all_inverted = 100;  // times the distance
-  return {reasons_against(measured(task, c, task.progress.part(1, 1))).size(), c.distance.l2 * (1 + all_inverted * inverted(c))};
+  constexpr double unseen = 1e-4;       // a distance that no one sees: what comes nearer may not have more inverted quads for it
+  Badness b{0, (c.distance.l2 + unseen) * (1 + all_inverted * inverted(c))};
+  for (const Reason& reason : reasons_against(measured(task, c, task.progress.part(1, 1)))) {
+    b.severity += reason.severity;
+    b.quads_are_too_large |= reason.what == "hausdorff" || reason.what == "inverted" || reason.what == "self_intersections";
+  }
+  return b;
 }
 
 // With the sharp edges of the surface, or, where these cannot be kept or make it worse, without.
@@ -126,24 +141,49 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   std::vector<Way> ways{{{}, false}};
   if (may_be_finer(task)) ways.insert(ways.end(), {{{}, true}, {{.levels_less = 1}, false}});
   std::optional<CandidateSearch> best;
-  std::pair<std::size_t, double> least{std::numeric_limits<std::size_t>::max(), 0};  // of what was not found
+  Badness least;
   for (const Way& way : ways) {
     CandidateSearch found = best_for(task, way.target, way.another);
-    const auto counts = found.candidate ? badness(task, *found.candidate) : least;
+    const Badness counts = found.candidate ? badness(task, *found.candidate) : Badness();
     if (!best || counts < least) best = std::move(found), least = counts;
-    if (least.first == 0) return std::move(*best);
+    if (least.severity == 0) return std::move(*best);
+    if (best->candidate && inverted(*best->candidate) > kHopeless) break;
   }
   CandidateSearch with = std::move(*best);
   if (with.candidate && inverted(*with.candidate) < kManyInverted) return with;
   CandidateSearch without = best_for(task, {.features = false}, false);
-  if (!without.candidate || (with.candidate && least.second <= badness(task, *without.candidate).second))
+  if (!without.candidate || (with.candidate && least.distance <= badness(task, *without.candidate).distance))
     return with.candidate ? std::move(with) : without;
   without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
   return without;
 }
 
+// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows.
+CandidateSearch best_by_need(const RemeshTask& task) {
+  constexpr int tries = 2;
+  CandidateSearch best = best_for(task, {}, false);
+  const RemeshOptions& options = task.options;
+  const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.base != BaseSize::Given &&
+                          !task.source.density.sizes && !task.source.mirror && !task.base.series;
+  if (!best.candidate || !may_change) return best;
+  Badness least = badness(task, *best.candidate);
+  const TriangleSurface placed = task.source.placement.to_unit(task.source.repaired);
+  Need need(placed);
+  for (int k = 0; k < tries && least.quads_are_too_large && need.learn_from(best.candidate->final_mesh, task.progress.part(1, 1)); ++k) {
+    const RemeshTask sized{options, task.source, task.base, task.progress, task.watch, gradual_sizes(placed, need.size())};
+    CandidateSearch found = search_candidate(sized, {.features = false}, base_requests(options, false));
+    if (!found.candidate) break;
+    found.candidate = {fitted(sized, std::move(*found.candidate), true), {}};
+    found.candidate->by_need = true;
+    const Badness counts = badness(task, *found.candidate);
+    if (!(counts < least)) break;
+    best = std::move(found), least = counts;
+  }
+  return best;
+}
+
 Found<Candidate> best_candidate(const RemeshTask& task) {
-  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_for(task, {}, false);
+  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_by_need(task);
   // What opens late is tried in the base next.
   if (!best.candidate && !task.base.series) throw Error(best.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, best.candidate.reason);
   return std::move(best.candidate);

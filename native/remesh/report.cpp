@@ -151,7 +151,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
   report["topology"] = describe_topology(task, c);
   report["features"] = describe_features(task, c);
   if (!task.source.density.name.empty()) report["density"] = describe_density(task.source.density, c.final_mesh);
-  report["base"] = {{"quads", c.base_quads}, {"vertices", c.base_vertices}};
+  report["base"] = {{"quads", c.base_quads}, {"vertices", c.base_vertices}, {"by_need", c.by_need}};
   report["levels"] = c.level_reports;
   report["final"] = {{"vertices", c.final_mesh.points.size()},
                      {"quads", q.quads},

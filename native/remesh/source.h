@@ -50,6 +50,8 @@ struct RemeshTask {
   const BaseSurface& base;
   const Progress& progress;
   Stopwatch& watch;
+  std::shared_ptr<const SizeField> need = {};  // sizes of quads as an earlier mesh has shown that the surface needs them; none: those of the source
+  const std::shared_ptr<const SizeField>& sizes() const { return need ? need : source.density.sizes; }
 };
 
 // How sharp edges are found, as the options ask; none: they are not kept.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/verdict.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -16,11 +17,13 @@ namespace {
 constexpr double kTooManyWidths = 3, kTooFar = 0.01;
 constexpr double kManyWidths = 2;         // is worth knowing
 constexpr double kManyInverted = 0.001;   // of the quads
+constexpr double kManyPairs = 10;         // of faces that cross: twice as bad as one
 constexpr double kEnoughVertices = 0.98;  // of those allowed
 
 std::string widths(double distance, const Finished& f) { return formatted("%.1f", distance / f.width) + " widths of its quads"; }
 
-bool too_far(double distance, const Finished& f) { return distance > kTooManyWidths * f.width || distance > kTooFar; }
+// Above 1 it is.
+double too_far(double distance, const Finished& f) { return std::max(distance / (kTooManyWidths * f.width), distance / kTooFar); }
 
 std::string far_off(const Finished& f) {
   const RemeshTask& task = f.task;
@@ -35,17 +38,17 @@ std::string far_off(const Finished& f) {
 
 std::optional<Reason> surface_missed(const Finished& f) {
   const SurfaceDistance& d = f.distance;
-  if (!too_far(d.hausdorff, f)) return {};
-  return Reason{"hausdorff", far_off(f), d.farthest};
+  if (!(too_far(d.hausdorff, f) > 1)) return {};
+  return Reason{"hausdorff", far_off(f), d.farthest, too_far(d.hausdorff, f)};
 }
 
 std::optional<Reason> boundary_missed(const Finished& f) {
   const SurfaceDistance& d = f.distance;
-  if (!too_far(d.boundary_hausdorff, f)) return {};
+  if (!(too_far(d.boundary_hausdorff, f) > 1)) return {};
   return Reason{"boundary_hausdorff",
                 "the mesh's boundary is up to " + scientific(d.boundary_hausdorff) + " of the diagonal away from the surface's, " +
                     widths(d.boundary_hausdorff, f) + ": more vertices or adaptive refinement follow it",
-                d.boundary_farthest};
+                d.boundary_farthest, too_far(d.boundary_hausdorff, f)};
 }
 
 std::optional<Reason> error_missed(const Finished& f) {
@@ -63,7 +66,7 @@ std::optional<Reason> many_inverted(const Finished& f) {
   return Reason{"inverted",
                 std::to_string(std::lround(q.inverted * static_cast<double>(q.quads))) + " of " + std::to_string(q.quads) +
                     " quads are inverted: the surface is bent or thin there beyond what quads of this size follow; more vertices may help",
-                middle};
+                middle, q.inverted / kManyInverted};
 }
 
 std::optional<Reason> runs_through_itself(const Finished& f) {
@@ -73,7 +76,7 @@ std::optional<Reason> runs_through_itself(const Finished& f) {
                 std::to_string(found.pairs) + (found.pairs == 1 ? " pair of faces runs" : " pairs of faces run") +
                     " through one another where the input does not: the surface is bent or thin there beyond what quads of this size follow; more "
                     "vertices may help",
-                found.where};
+                found.where, 1 + static_cast<double>(found.pairs) / kManyPairs};
 }
 
 std::optional<Reason> features_lost(const Finished& f) {

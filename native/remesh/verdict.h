@@ -16,6 +16,7 @@ struct Reason {
   std::string what;           // a short key
   std::string text;           // a sentence, with figures
   std::optional<Vec3> where;  // one place, the worst where there is one; of unit size as the candidate
+  double severity = 1;        // times what would just be no reason; 1 where nothing is measured
 };
 
 // A finished remesh, and what of its final mesh is measured for the verdict only.

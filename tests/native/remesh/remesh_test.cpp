@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <thread>
 
 #include "codec/container.h"
 #include "generated_surfaces.h"
 #include "models.h"
 #include "remesh/fit.h"
+#include "shapes.h"
 #include "soundness.h"
 #include "surface/topology_summary.h"
 
@@ -67,6 +69,43 @@ TEST_P(RemeshKinds, AreAsGoodFarAwayAndAtAnyScale) {
     const RemeshResult r = run(moved, 2000, GetParam());
     expect_good(r, 2000);
     EXPECT_NEAR(r.report["final"]["l2"].get<double>(), l2, 0.25 * l2);
+  }
+}
+
+// Bodies of few triangles beside one another: their base would be pillows of two quads, whose corners are the same.
+TEST(Remesh, SmallBodiesHaveTheQuadsOfACube) {
+  PolygonSoup soup;
+  for (int k = 0; k < 40; ++k) {
+    PolygonSoup body = k % 2 == 0 ? testing::ball(4) : cube();
+    const Vec3 size(1, 0.2 + 0.02 * k, k % 3 == 0 ? 0.05 : 0.6);
+    for (Vec3& p : body.points) p = p.cwiseProduct(size) + Vec3(3 * (k % 8), 3 * (k / 8), 0);
+    append(soup, body);
+  }
+  RemeshOptions options;
+  options.vertices = 2500;
+  Context context;
+  const RemeshResult r = remesh(soup, options, context);
+  const QuadMesh base = r.hierarchy.level_mesh(0);
+  EXPECT_GE(base.face_count(), 40U * 6);
+  std::set<std::set<int>> corners;
+  for (std::size_t f = 0; f < base.face_count(); ++f)
+    EXPECT_TRUE(corners.insert({base.indices.begin() + base.offsets[f], base.indices.begin() + base.offsets[f + 1]}).second);
+}
+
+TEST(Remesh, ABaseThatTakesAllVerticesIsRefusedByName) {
+  PolygonSoup soup;
+  for (int k = 0; k < 760; ++k) append(soup, cube(Vec3(3 * (k % 28), 3 * (k / 28), 0)));
+  RemeshOptions options;
+  options.vertices = 8000;
+  options.features = Features::None;
+  Context context;
+  try {
+    remesh(soup, options, context);
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::InvalidInput);
+    for (const char* part : {"760 components", "8000 vertices", "drop_components"})
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
   }
 }
 
