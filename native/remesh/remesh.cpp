@@ -163,7 +163,7 @@ CandidateSearch best_by_need(const RemeshTask& task) {
   constexpr int tries = 2;
   CandidateSearch best = best_for(task, {}, false);
   const RemeshOptions& options = task.options;
-  const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.base != BaseSize::Given &&
+  const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.levels < 0 && options.base != BaseSize::Given &&
                           !task.source.density.sizes && !task.source.mirror && !task.base.series;
   if (!best.candidate || !may_change) return best;
   Badness least = badness(task, *best.candidate);
