@@ -16,7 +16,7 @@ from .settings import COMPONENTS, FACES, SYMMETRIES, SYMMETRY_SIDES, TOPOLOGIES,
 from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
-LATER_COMMANDS = ("encode", "decode", "bench")
+LATER_COMMANDS = ("bench",)
 PROGRAM = "hybrid-mesh"
 
 
@@ -147,6 +147,23 @@ def info(arguments):
     return _answer(job, arguments.timeout, f"{arguments.file}: ", show)
 
 
+def encode(arguments):
+    job = {"kind": "encode", "path": arguments.file, "output": arguments.output, "bytes": arguments.bytes or 0, "error": arguments.error or 0.0}
+    return _answer(job, arguments.timeout, f"{arguments.file}: ", lambda answer: _show(f"{arguments.output}: {answer['bytes']:,} bytes"))
+
+
+def decode(arguments):
+    form = os.path.splitext(arguments.output)[1][1:].lower()
+    if form not in input_files.EXPORT_FORMATS:
+        raise WrongArguments(f"--output must be a file of a kind that is written ({', '.join(input_files.EXPORT_FORMATS)}), not {arguments.output!r}")
+    job = {"kind": "decode", "path": arguments.file, "output": arguments.output, "bytes": arguments.bytes or 0, "level": arguments.level}
+
+    def show(answer):
+        _show(f"{arguments.output}: {answer['vertices']:,} vertices, {answer['faces']:,} faces")
+
+    return _answer(job, arguments.timeout, f"{arguments.file}: ", show)
+
+
 def _answer(job, timeout, label, show):
     processes = Processes()
     try:
@@ -161,7 +178,7 @@ def _answer(job, timeout, label, show):
 def _known(argv):
     """The arguments, unless they ask for what this version does not have yet."""
     if argv and argv[0] in LATER_COMMANDS:
-        raise WrongArguments(f"{argv[0]} comes with a later version; there are remesh, compare and info")
+        raise WrongArguments(f"{argv[0]} comes with a later version; there are remesh, compare, info, encode and decode")
     return argv
 
 
@@ -236,6 +253,26 @@ def _parser():
     command.add_argument("--check", action="store_true", help="verify invariants, topology and every stored map")
     command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
 
+    command = commands.add_parser("encode", help="a .hmesh as an embedded stream, a few hundred bytes and more", allow_abbrev=False)
+    command.set_defaults(command=encode)
+    command.add_argument("file", metavar="IN.hmesh")
+    command.add_argument("output", metavar="OUT.hmesh", help="connectivity and positions of all levels; maps and settings are left out")
+    bounds = command.add_mutually_exclusive_group()
+    bounds.add_argument("--bytes", type=_whole(1), metavar="N", help="hard upper bound on the file's size")
+    bounds.add_argument(
+        "--error", type=_fraction, metavar="E",
+        help="the shortest stream with this L2 distance from the final mesh (not from the original surface), a fraction of the bounding-box diagonal",
+    )  # fmt: skip
+    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+
+    command = commands.add_parser("decode", help="a mesh of a .hmesh", allow_abbrev=False)
+    command.set_defaults(command=decode)
+    command.add_argument("file", metavar="IN.hmesh")
+    command.add_argument("--output", required=True, metavar="FILE", help=f"the mesh: {', '.join('.' + form for form in input_files.EXPORT_FORMATS)}")
+    command.add_argument("--bytes", type=_whole(1), metavar="N", help="read no more of a stream: a coarser version of all levels")
+    command.add_argument("--level", type=_whole(0), metavar="J", help="this level, 0 being the base, instead of the final mesh")
+    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+
     for name in LATER_COMMANDS:
         commands.add_parser(name, help="(comes with a later version)")
     return parser
@@ -261,6 +298,13 @@ def _positive(text):
         value = 0
     if not 0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"must be a number above 0, not {text!r}")
+    return value
+
+
+def _fraction(text):
+    value = _positive(text)
+    if value >= 1:
+        raise argparse.ArgumentTypeError(f"must be a fraction below 1, not {text!r}")
     return value
 
 

@@ -116,6 +116,24 @@ def info(job):
     return answer
 
 
+def encode(job):
+    """Writes a hierarchy as a stream."""
+    module = native()
+    refuse_unreadable(job["path"])
+    hierarchy = module.load_hierarchy(job["path"])
+    return {"bytes": hierarchy.save_stream(job["output"], most_bytes=job["bytes"], error=job["error"])}
+
+
+def decode(job):
+    """Writes the final mesh or a level of a hierarchy, of a stream as far as it is to be read."""
+    module = native()
+    refuse_unreadable(job["path"])
+    hierarchy = module.load_hierarchy(job["path"], most_bytes=job["bytes"])
+    mesh = hierarchy.final_mesh() if job["level"] is None else hierarchy.level(f"N{job['level']}")
+    module.write_mesh(job["output"], mesh["points"], mesh["offsets"], mesh["indices"])
+    return {"vertices": len(mesh["points"]), "faces": len(mesh["offsets"]) - 1}
+
+
 def _kept_verdict(metadata):
     """The verdict on the remesh that a hierarchy was saved by; None where it was made in another way."""
     try:
@@ -130,7 +148,7 @@ def write_text(path, text):
         file.write(text)
 
 
-JOBS = {"remesh": remesh, "compare": compare, "info": info}
+JOBS = {"remesh": remesh, "compare": compare, "info": info, "encode": encode, "decode": decode}
 
 
 def refuse_unreadable(path):

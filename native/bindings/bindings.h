@@ -15,6 +15,7 @@ void bind_subdivision(pybind11::module_& module);    // a method of bind_hierarc
 void bind_modelling(pybind11::module_& module);      // the same
 void bind_region_update(pybind11::module_& module);  // the same
 void bind_wavelets(pybind11::module_& module);       // the same
+void bind_streams(pybind11::module_& module);        // the same
 void bind_remesh(pybind11::module_& module);
 void bind_job(pybind11::module_& module);
 void bind_topology(pybind11::module_& module);

@@ -198,9 +198,9 @@ void save(const PythonHierarchy& hierarchy, const py::object& path_object, const
   locked(hierarchy, [&](const HybridMesh& mesh) { save_hierarchy(mesh, metadata ? *metadata : hierarchy.metadata(), path); });
 }
 
-PythonHierarchy load(const py::object& path_object) {
+PythonHierarchy load(const py::object& path_object, std::size_t most_bytes) {
   const std::string path = path_from_python(path_object);
-  LoadedHierarchy loaded = without_gil([&] { return load_hierarchy(path); });
+  LoadedHierarchy loaded = without_gil([&] { return load_hierarchy(path, most_bytes); });
   return {std::make_shared<const HybridMesh>(std::move(loaded.hierarchy)), std::move(loaded.metadata_json)};
 }
 
@@ -237,7 +237,8 @@ void bind_hierarchy(py::module_& module) {
           "check", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, check); }, "What is wrong with it; empty if nothing is.")
       .def(
           "info", [](const PythonHierarchy& hierarchy) { return locked(hierarchy, info); }, "Counts, as JSON text.");
-  module.def("load_hierarchy", &load, arg("path"), "Reads what Hierarchy.save() wrote.");
+  module.def("load_hierarchy", &load, arg("path"), py::kw_only(), arg("most_bytes") = 0,
+             "Reads what Hierarchy.save() or Hierarchy.save_stream() wrote; of a stream no more than so many bytes, if that is not 0.");
 }
 
 }  // namespace hybrid_mesh

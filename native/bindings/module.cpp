@@ -12,6 +12,7 @@ PYBIND11_MODULE(_native, module) {
   hybrid_mesh::bind_modelling(module);
   hybrid_mesh::bind_region_update(module);
   hybrid_mesh::bind_wavelets(module);
+  hybrid_mesh::bind_streams(module);
   hybrid_mesh::bind_remesh(module);
   hybrid_mesh::bind_job(module);
   hybrid_mesh::bind_topology(module);

@@ -4,17 +4,13 @@
 // before anything is allocated for it.
 #include "codec/container.h"
 
+#include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-
-#if defined(__unix__) || defined(__APPLE__)
-#include <unistd.h>
-#endif
 
 #include "base/error.h"
+#include "codec/file_bytes.h"
+#include "codec/stream.h"
 #include "hierarchy/archive.h"
 
 namespace hybrid_mesh {
@@ -397,43 +393,15 @@ LoadedHierarchy decode_hierarchy(const std::uint8_t* data, std::size_t size) {
 }
 
 void save_hierarchy(const HybridMesh& hierarchy, const std::string& metadata_json, const std::string& path) {
-  namespace fs = std::filesystem;
-  const std::vector<std::uint8_t> bytes = encode_hierarchy(hierarchy, metadata_json);
-#if defined(__unix__) || defined(__APPLE__)
-  const std::string part = path + "." + std::to_string(::getpid()) + ".part";
-#else
-  const std::string part = path + ".part";
-#endif
-  const auto fail = [&](const std::string& what) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw Error(ErrorCode::Io, "cannot write " + path + ": " + what);
-  };
-  {
-    std::ofstream file(part, std::ios::binary | std::ios::trunc);
-    if (!file) fail(std::strerror(errno));
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) fail(errno ? std::strerror(errno) : "the disk may be full");
-  }
-  std::error_code error;
-  fs::rename(part, path, error);
-  if (error) fail(error.message());
+  write_bytes(encode_hierarchy(hierarchy, metadata_json), path);
 }
 
-LoadedHierarchy load_hierarchy(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(ErrorCode::Io, "cannot read " + path + ": " + std::strerror(errno));
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw Error(ErrorCode::Io, "cannot read " + path + ": it is a folder");
-  std::vector<std::uint8_t> bytes;
-  std::vector<char> block(1 << 20);
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    bytes.insert(bytes.end(), block.begin(), block.begin() + file.gcount());
-  }
-  if (file.bad()) throw Error(ErrorCode::Io, "cannot read " + path);
+LoadedHierarchy load_hierarchy(const std::string& path, std::size_t most_bytes) {
+  const std::vector<std::uint8_t> bytes = read_bytes(path);
   try {
+    if (is_stream(bytes.data(), bytes.size()))
+      return {decode_stream(bytes.data(), most_bytes ? std::min(most_bytes, bytes.size()) : bytes.size()), ""};
+    if (most_bytes > 0) throw Error(ErrorCode::InvalidInput, "a hierarchy that is no stream is read whole or not at all");
     return decode_hierarchy(bytes.data(), bytes.size());
   } catch (const Error& e) {
     throw Error(e.code(), path + ": " + e.what());

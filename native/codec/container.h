@@ -29,7 +29,8 @@ std::uint64_t container_checksum(const std::uint8_t* data, std::size_t size);
 // Written to a temporary file beside `path` that is renamed when complete. Throws Error{Io} and leaves nothing behind on failure.
 void save_hierarchy(const HybridMesh& hierarchy, const std::string& metadata_json, const std::string& path);
 
-// Throws like decode_hierarchy, Error{Io} if the file cannot be read.
-LoadedHierarchy load_hierarchy(const std::string& path);
+// A container, or a stream as encode_stream() makes it, which has no metadata. Throws like decode_hierarchy, Error{Io} if the file cannot be read.
+// `most_bytes`: of a stream, what is read of it; 0: all. Throws Error{InvalidInput} if a container is not to be read whole.
+LoadedHierarchy load_hierarchy(const std::string& path, std::size_t most_bytes = 0);
 
 }  // namespace hybrid_mesh

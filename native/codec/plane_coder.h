@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to codec/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/bit_models.h"
+#include "wavelets/wavelet_step.h"
+
+namespace hybrid_mesh {
+
+// Of a coefficient: a detail's component across the surface (0) or along it (1, 2).
+inline constexpr int components = 3;
+
+// Which coefficients there are on a level and what is around each: the same for writers and readers.
+struct CoefficientLayout {
+  struct Item {
+    int vertex = -1;  // of the level's mesh
+    int kind = 0;     // 0: side, 1: centre, 2: other
+  };
+  std::vector<Item> items;
+  // Of each item: others whose size tells about its own, with weights 1 or 2.
+  std::vector<std::size_t> first_neighbour{0};
+  std::vector<std::pair<int, int>> neighbours;
+  // Vertices of the level's mesh without an item, and the items one edge away.
+  std::vector<std::pair<int, std::vector<int>>> bare;
+  // Vertices of the coarser mesh between which it is; -1: fewer than four.
+  std::vector<std::array<int, 4>> parents;
+};
+
+// With `remainder`, every vertex has an item more, after the details.
+CoefficientLayout coefficient_layout(const HybridMesh& hierarchy, const WaveletStep& step, bool remainder);
+
+// Coefficients of one level as far as they are known, in units of the steps of a bit-plane. Planes are numbered from coarse to fine; the steps of
+// plane p are 2^-p.
+struct Coefficients {
+  int first_plane = 0, last_plane = -1;  // outside of which all bits are zero, or not coded
+  int plane = -1;                        // the last one that was begun
+  std::vector<std::uint32_t> size;       // components an item; in steps of `plane`
+  std::vector<char> negative;
+  std::size_t coded = 0;  // of the coefficients, in order: how many have their bit of `plane`
+
+  // Within its interval, where the mean of what is likely there is.
+  double value(std::size_t i) const;
+};
+
+// Goes through the bit-planes of one stream.
+class PlaneCoder {
+ public:
+  explicit PlaneCoder(BitCoder& coder) : coder_(coder) {}
+  // One bit of each coefficient of a level. `coarser`: those of the level before, null for the first. `all`: writers' coefficients, with all planes.
+  void code(const CoefficientLayout& layout, Coefficients& known, const CoefficientLayout* coarser_layout, const Coefficients* coarser,
+            std::size_t coarser_vertices, int level, int plane, const Coefficients* all);
+
+ private:
+  static constexpr int bins = 12, kinds = 3, levels = 25;
+  struct Significance {
+    Mixer mixer;
+    std::array<BitModel, bins> near, above;
+    std::array<BitModel, bins * 3> joint;
+    std::array<BitModel, bins * bins> both;
+    std::array<BitModel, levels> level;
+  };
+  void code_coefficient(Coefficients& known, std::size_t i, int kind, int level, std::uint32_t near, std::uint32_t above, const Coefficients* all);
+
+  BitCoder& coder_;
+  std::array<Significance, components * kinds> significance_;
+  std::array<BitModel, components * 4> refinement_;
+};
+
+}  // namespace hybrid_mesh

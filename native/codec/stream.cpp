@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/stream.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "codec/stream_body.h"
+#include "hierarchy/vertex_index.h"
+#include "surface/distance.h"
+
+namespace hybrid_mesh {
+
+namespace {
+
+constexpr std::array<std::uint8_t, 3> magic = {'H', 'M', 'w'};
+constexpr std::uint8_t version = 1;
+constexpr std::size_t preamble = magic.size() + 1;
+
+// Samples a direction of the distances that a prefix is chosen by.
+constexpr std::int64_t samples = 50000;
+
+[[noreturn]] void corrupt(const std::string& what) { throw Error(ErrorCode::CorruptStream, "not a valid hierarchy stream: " + what); }
+
+struct Decoded {
+  std::shared_ptr<const StreamGeometry> geometry;
+  StreamContent content;
+};
+
+// `geometry`: of the same stream, if another prefix has been decoded already.
+Decoded decoded(const std::uint8_t* data, std::size_t size, std::shared_ptr<const StreamGeometry> geometry) {
+  if (size < preamble || !is_stream(data, size)) corrupt("it starts with other bytes");
+  if (data[magic.size()] == 0) corrupt("a version that never was");
+  if (data[magic.size()] > version)
+    throw Error(ErrorCode::Unsupported, "a hierarchy stream of version " + std::to_string(data[magic.size()]) + ", newer than this program");
+  BitReader reader(data + preamble, size - preamble);
+  StreamCoder coder(reader);
+  StreamContent content;
+  try {
+    HybridMesh mesh = coder.code_structure();
+    const int depth = mesh.depth();
+    coder.code_head(depth, content, nullptr);
+    if (!geometry) {
+      const std::shared_ptr<StreamGeometry> made = stream_geometry(std::move(mesh));
+      add_layouts(*made, content.remainders);
+      geometry = made;
+    }
+    coder.code_base(*geometry, content, nullptr);
+  } catch (const StreamEnd&) {
+    corrupt("it ends before its base does");
+  }
+  try {
+    coder.code_planes(*geometry, content, nullptr);
+  } catch (const StreamEnd&) {
+  }
+  return {std::move(geometry), std::move(content)};
+}
+
+// The points of a hierarchy's final mesh at the vertices of another that has the same ones under other names.
+template <class GivenVertex>
+std::vector<Vec3> points_at(const HybridMesh& hierarchy, const QuadMesh& mesh, const GivenVertex& given_vertex) {
+  const QuadMesh given = hierarchy.final_mesh();
+  if (given.vertex_count() != mesh.vertex_count() || given.face_count() != mesh.face_count())
+    throw Error(ErrorCode::Internal, "a stream's mesh differs from the one that was given");
+  const VertexIndex find(given.vertex);
+  std::vector<Vec3> points;
+  points.reserve(mesh.vertex_count());
+  for (const VertexId vertex : mesh.vertex) {
+    const int v = find(given_vertex(vertex));
+    if (v < 0) throw Error(ErrorCode::Internal, "a stream's vertex that was not given");
+    if (!given.points[v].allFinite()) throw Error(ErrorCode::InvalidInput, "a position that is not finite");
+    points.push_back(given.points[v]);
+  }
+  return points;
+}
+
+PolygonSoup final_soup(const Decoded& stream) {
+  QuadMesh mesh = stream.geometry->mesh.final_mesh();
+  mesh.points = synthesise(*stream.geometry, stream.content).back();
+  for (Vec3& point : mesh.points) point = stream.content.placement.outward(point);
+  return to_soup(mesh);
+}
+
+// Infinity for a prefix without its base.
+double error_of(const std::vector<std::uint8_t>& bytes, std::size_t size, const std::shared_ptr<const StreamGeometry>& geometry,
+                const DistanceReference& reference, const Progress& progress) {
+  std::optional<Decoded> stream;
+  try {
+    stream = decoded(bytes.data(), size, geometry);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::CorruptStream) throw;
+    return std::numeric_limits<double>::infinity();
+  }
+  return reference.distance(final_soup(*stream), {samples, 1}, progress).l2;
+}
+
+// By bisection, as if the error fell all along the stream, to within 1/256 of the size.
+std::size_t shortest(const std::vector<std::uint8_t>& bytes, double error, const std::shared_ptr<const StreamGeometry>& geometry,
+                     const PolygonSoup& given, const Progress& progress) {
+  const DistanceReference reference(given);
+  std::size_t too_short = 0, enough = bytes.size();
+  for (int step = 0; enough - too_short > 1 + enough / 256; ++step) {
+    progress(1 - 1.0 / (step + 1));
+    // Where errors are far apart, sizes are: the mean is that of logarithms.
+    const double mean = std::sqrt(static_cast<double>(std::max<std::size_t>(too_short, 64)) * static_cast<double>(enough));
+    const std::size_t size = std::clamp(static_cast<std::size_t>(mean), too_short + 1, enough - 1);
+    (error_of(bytes, size, geometry, reference, progress.part(1, 1)) <= error ? enough : too_short) = size;
+  }
+  return enough;
+}
+
+}  // namespace
+
+bool is_stream(const std::uint8_t* data, std::size_t size) { return size >= magic.size() && std::equal(magic.begin(), magic.end(), data); }
+
+std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
+  if (hierarchy.node_count() == 0) throw Error(ErrorCode::InvalidInput, "an empty hierarchy has no stream");
+  progress.stage("coding");
+  BitWriter writer;
+  StreamCoder coder(writer, &hierarchy);
+  const std::shared_ptr<StreamGeometry> geometry = stream_geometry(coder.code_structure());
+  const QuadMesh mesh = geometry->mesh.final_mesh();
+  const std::vector<Vec3> points = points_at(hierarchy, mesh, [&](VertexId vertex) { return coder.given_vertex(vertex); });
+  progress(0.1);
+  const StreamContent all = analyse(*geometry, points);
+  progress(0.4);
+  StreamContent known;
+  coder.code_head(static_cast<int>(geometry->steps.size()), known, &all);
+  coder.code_base(*geometry, known, &all);
+  const std::size_t base = preamble + writer.size() + 4;
+  coder.code_planes(*geometry, known, &all);
+  progress(0.5);
+  std::vector<std::uint8_t> bytes(magic.begin(), magic.end());
+  bytes.push_back(version);
+  const std::vector<std::uint8_t> body = writer.finish();
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  if (options.most_bytes > 0 && options.most_bytes < bytes.size()) {
+    if (options.most_bytes < base)
+      throw Error(ErrorCode::InvalidInput,
+                  "the base alone takes about " + std::to_string(base) + " bytes, more than " + std::to_string(options.most_bytes));
+    bytes.resize(options.most_bytes);
+  }
+  if (options.error > 0) bytes.resize(shortest(bytes, options.error, geometry, to_soup(hierarchy.final_mesh()), progress.part(0.5, 1)));
+  progress(1);
+  return bytes;
+}
+
+HybridMesh decode_stream(const std::uint8_t* data, std::size_t size) {
+  const Decoded stream = decoded(data, size, nullptr);
+  HybridMesh mesh = stream.geometry->mesh;
+  const std::vector<std::vector<Vec3>> levels = synthesise(*stream.geometry, stream.content);
+  const auto keep = [&](QuadMesh level, const std::vector<Vec3>& points, auto&& set) {
+    for (std::size_t v = 0; v < points.size(); ++v) level.points[v] = stream.content.placement.outward(points[v]);
+    set(level);
+  };
+  for (std::size_t j = 0; j < levels.size(); ++j)
+    keep(mesh.level_mesh(static_cast<int>(j)), levels[j], [&](const QuadMesh& level) { mesh.set_level_positions(static_cast<int>(j), level); });
+  keep(mesh.final_mesh(), levels.back(), [&](const QuadMesh& level) { mesh.set_final_positions(level); });
+  return mesh;
+}
+
+}  // namespace hybrid_mesh

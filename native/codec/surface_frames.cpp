@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "codec/surface_frames.h"
+
+#include <cmath>
+
+namespace hybrid_mesh {
+
+namespace {
+
+double dot(const Vec3& a, const Vec3& b) { return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z(); }
+
+Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()}; }
+
+// False if it has no direction.
+bool normalise(Vec3& v) {
+  const double length = std::sqrt(dot(v, v));
+  if (!(length > 1e-150)) return false;
+  v = {v.x() / length, v.y() / length, v.z() / length};
+  return true;
+}
+
+void subtract_along(Vec3& v, const Vec3& normal) {
+  const double height = dot(v, normal);
+  v = {v.x() - height * normal.x(), v.y() - height * normal.y(), v.z() - height * normal.z()};
+}
+
+Frame frame_of(Vec3 normal, Vec3 tangent) {
+  if (!normalise(normal)) return {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  if (!normalise(tangent)) tangent.setZero();
+  subtract_along(tangent, normal);
+  // A direction that is almost the normal is none.
+  if (dot(tangent, tangent) < 1e-6) {
+    tangent = std::abs(normal.x()) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    subtract_along(tangent, normal);
+  }
+  normalise(tangent);
+  return {normal, tangent, cross(normal, tangent)};
+}
+
+}  // namespace
+
+std::vector<Frame> surface_frames(const QuadMesh& mesh, const std::vector<Vec3>& points) {
+  std::vector<Vec3> normal(points.size(), Vec3::Zero()), tangent(points.size(), Vec3::Zero());
+  std::vector<char> met(points.size(), 0);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::int64_t first = mesh.offsets[f], last = mesh.offsets[f + 1];
+    const Vec3& origin = points[mesh.indices[first]];
+    Vec3 area = Vec3::Zero();
+    for (std::int64_t c = first + 1; c + 1 < last; ++c) area += cross(points[mesh.indices[c]] - origin, points[mesh.indices[c + 1]] - origin);
+    for (std::int64_t c = first; c < last; ++c) {
+      const int v = mesh.indices[c];
+      normal[v] += area;
+      if (met[v]) continue;
+      met[v] = 1;
+      tangent[v] = points[mesh.indices[c + 1 < last ? c + 1 : first]] - points[v];
+    }
+  }
+  std::vector<Frame> frames;
+  frames.reserve(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) frames.push_back(frame_of(normal[v], tangent[v]));
+  return frames;
+}
+
+}  // namespace hybrid_mesh
