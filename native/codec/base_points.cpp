@@ -47,7 +47,7 @@ Prediction predict(const QuadMesh& mesh, const std::vector<std::vector<std::int6
 
 }  // namespace
 
-double BasePoints::value(std::size_t i) const { return std::ldexp(steps[i] + (i < coded ? 0.5 : 1.0), -bits); }
+double BasePoints::value(std::size_t i) const { return std::ldexp(steps[i] + (i < coded ? 0.5 : 1.0), -bits) - base_shift; }
 
 void code_base_points(BitCoder& coder, const QuadMesh& mesh, BasePoints& known, int bits, const BasePoints* all) {
   std::array<NumberModel, 3> models;

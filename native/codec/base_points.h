@@ -10,6 +10,9 @@
 
 namespace hybrid_mesh {
 
+// Added to the base's coordinates, so that zero, where everything is that a stream says nothing of, is well inside a step, however large that is.
+inline constexpr double base_shift = 1.0 / 3;
+
 // Positions of the base as far as they are known: whole numbers of steps 2^-bits, rounded down, of three coordinates a vertex.
 struct BasePoints {
   int bits = 0;

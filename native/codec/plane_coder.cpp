@@ -75,7 +75,11 @@ CoefficientLayout coefficient_layout(const HybridMesh& hierarchy, const WaveletS
   std::vector<int> item_at(fine.vertex_count(), -1);
   for (const DetailVertex& detail : step.details()) {
     item_at[detail.vertex] = static_cast<int>(layout.items.size());
-    layout.items.push_back({detail.vertex, detail.kind == DetailKind::Edge ? 0 : detail.kind == DetailKind::Face ? 1 : 2});
+    layout.items.push_back({detail.vertex,
+                            detail.kind == DetailKind::Edge   ? 0
+                            : detail.kind == DetailKind::Face ? 1
+                                                              : 2,
+                            detail.kind == DetailKind::Inserted});
   }
   for (int v = 0; v < static_cast<int>(fine.vertex_count()); ++v) {
     if (item_at[v] >= 0) continue;
@@ -84,7 +88,7 @@ CoefficientLayout coefficient_layout(const HybridMesh& hierarchy, const WaveletS
       if (item_at[w] >= 0) layout.bare.back().second.push_back(item_at[w]);
   }
   const auto details = static_cast<int>(layout.items.size());
-  for (int v = 0; v < static_cast<int>(fine.vertex_count()) && remainder; ++v) layout.items.push_back({v, 2});
+  for (int v = 0; v < static_cast<int>(fine.vertex_count()) && remainder; ++v) layout.items.push_back({v, 2, true});
   for (int i = 0; i < static_cast<int>(layout.items.size()); ++i) {
     if (i < details) add_neighbours(layout, around, item_at, i);
     layout.first_neighbour.push_back(layout.neighbours.size());

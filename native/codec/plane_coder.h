@@ -19,6 +19,8 @@ struct CoefficientLayout {
   struct Item {
     int vertex = -1;  // of the level's mesh
     int kind = 0;     // 0: side, 1: centre, 2: other
+    // Components are those of the coordinates, not of a frame: an operation's vertices are far from what they are predicted by, which may be a point.
+    bool unturned = false;
   };
   std::vector<Item> items;
   // Of each item: others whose size tells about its own, with weights 1 or 2.

@@ -32,6 +32,8 @@ double scale_of(int kind, std::size_t component, int levels) { return weight_of(
 // Of the bits of the base's coordinates, as many as the details' steps make worth while.
 int bits_at(int plane, int depth) { return std::min(plane + depth - 2, base_bits); }
 
+const Frame coordinate_axes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+
 constexpr int least_rough_bits = 5, most_rough_bits = 12;
 
 double dot(const Vec3& a, const Vec3& b) { return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z(); }
@@ -41,11 +43,12 @@ std::vector<Vec3> refined_points(const WaveletStep& step, const CoefficientLayou
                                  const std::vector<Frame>& frames, int levels, const std::vector<Vec3>& coarse) {
   LevelAnalysis analysis{coarse, {}, {}};
   for (std::size_t i = 0; i < layout.items.size(); ++i) {
-    const auto [vertex, kind] = layout.items[i];
+    const auto [vertex, kind, unturned] = layout.items[i];
+    const Frame& frame = unturned ? coordinate_axes : frames[vertex];
     Vec3 detail = Vec3::Zero();
     for (std::size_t c = 0; c < components; ++c) {
       const double value = known.value(components * i + c) / scale_of(kind, c, levels);
-      const Vec3& axis = frames[vertex][c];
+      const Vec3& axis = frame[c];
       detail = {detail.x() + value * axis.x(), detail.y() + value * axis.y(), detail.z() + value * axis.z()};
     }
     (i < step.details().size() ? analysis.details : analysis.remainder).push_back(detail);
@@ -63,10 +66,11 @@ Coefficients quantised(const CoefficientLayout& layout, const LevelAnalysis& ana
   result.plane = result.last_plane = plane;
   std::uint32_t largest = 0;
   for (std::size_t i = 0; i < layout.items.size(); ++i) {
-    const auto [vertex, kind] = layout.items[i];
+    const auto [vertex, kind, unturned] = layout.items[i];
+    const Frame& frame = unturned ? coordinate_axes : frames[vertex];
     const Vec3& detail = i < analysis.details.size() ? analysis.details[i] : analysis.remainder[i - analysis.details.size()];
     for (std::size_t c = 0; c < components; ++c) {
-      const double steps = std::ldexp(dot(detail, frames[vertex][c]) * scale_of(kind, c, levels), plane);
+      const double steps = std::ldexp(dot(detail, frame[c]) * scale_of(kind, c, levels), plane);
       if (!(std::abs(steps) < 1u << 30)) throw Error(ErrorCode::Unsupported, "a stream cannot hold details this large");
       result.size.push_back(static_cast<std::uint32_t>(std::abs(steps)));
       result.negative.push_back(steps < 0);
@@ -143,7 +147,7 @@ StreamContent analyse(StreamGeometry& geometry, const std::vector<Vec3>& points)
   content.base.bits = base_bits;
   for (const Vec3& point : at)
     for (int i = 0; i < 3; ++i) {
-      const double steps = std::floor(std::ldexp(point[i], base_bits));
+      const double steps = std::floor(std::ldexp(point[i] + base_shift, base_bits));
       if (!(std::abs(steps) < 1u << 30)) throw Error(ErrorCode::Unsupported, "a stream cannot hold a base this far from the surface");
       content.base.steps.push_back(static_cast<std::int32_t>(steps));
     }

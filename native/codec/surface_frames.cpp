@@ -11,10 +11,13 @@ double dot(const Vec3& a, const Vec3& b) { return (a.x() * b.x() + a.y() * b.y()
 
 Vec3 cross(const Vec3& a, const Vec3& b) { return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()}; }
 
+// Of areas and lengths where the whole surface has a diagonal of about 1: below, there is nothing but rounding.
+constexpr double rounding = 1e-12;
+
 // False if it has no direction.
 bool normalise(Vec3& v) {
   const double length = std::sqrt(dot(v, v));
-  if (!(length > 1e-150)) return false;
+  if (!(length > rounding)) return false;
   v = {v.x() / length, v.y() / length, v.z() / length};
   return true;
 }
