@@ -2,6 +2,7 @@
 #include "codec/structure_coder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -67,6 +68,26 @@ void name_corners(const HybridMesh& mesh, const GluedQuads& glued, Repatch& repa
 
 }  // namespace
 
+// Where faces with hanging nodes are triangulated, which side is a quad's first one decides how: then it is kept.
+void StructureCoder::code_turns(GluedQuads& glued) {
+  if (closure_ != FaceClosure::Triangles) return;
+  std::vector<int> turn;
+  for (std::size_t q = 0; q < glued.sides.size(); ++q) {
+    turn.push_back(0);
+    for (int i = 0; i < 2; ++i) turn[q] |= coder_.code_raw(given_ && ((glued.turn[q] >> i) & 1)) << i;
+    if (given_) glued.turn[q] = 0;
+  }
+  const GluedQuads before = glued;
+  for (std::size_t q = 0; q < glued.sides.size(); ++q)
+    for (std::size_t s = 0; s < 4; ++s) {
+      const std::size_t place = (s + turn[q]) % 4;
+      Repatch::Side& side = glued.sides[q][place];
+      side = before.sides[q][s];
+      if (side.kind == Kind::Patch) side.side = (side.side + turn[side.quad]) % 4;
+      glued.vertex[4 * q + place] = before.vertex[4 * q + s];
+    }
+}
+
 StructureCoder::StructureCoder(BitCoder& coder, const HybridMesh* given) : coder_(coder), given_(given), base_(coder), inserted_(coder) {
   if (!given) return;
   for (int o = 0; o < given->operation_count(); ++o) {
@@ -83,9 +104,10 @@ StructureCoder::StructureCoder(BitCoder& coder, const HybridMesh* given) : coder
 
 HybridMesh StructureCoder::code() {
   try {
+    code_shape();
     HybridMesh base = code_base();
     code_sharp_sides(base);
-    code_shape();
+    if (!given_ && uniform_ && static_cast<double>(base.base_count()) * std::ldexp(1, 2 * depth_) > most_stream_quads) corrupt("too many quads");
     HybridMesh mesh = grow(std::move(base), *this, most_stream_quads);
     match(mesh);
     mesh.set_closure(closure_);
@@ -99,7 +121,8 @@ HybridMesh StructureCoder::code() {
 HybridMesh StructureCoder::code_base() {
   QuadSides sides;
   if (given_) sides = base_sides(*given_);
-  const GluedQuads glued = base_.code(given_ ? &sides : nullptr, {}, 0, most_stream_quads);
+  GluedQuads glued = base_.code(given_ ? &sides : nullptr, {}, 0, most_stream_quads);
+  code_turns(glued);
   if (glued.sides.empty()) corrupt("no base quads");
   std::vector<std::array<int, 4>> quads(glued.sides.size());
   std::vector<std::array<SideLink, 4>> links(quads.size());
@@ -234,7 +257,8 @@ bool StructureCoder::operation(const HybridMesh& mesh, int level, Repatch& repat
   code_removed(mesh, repatch, first);
   QuadSides sides;
   if (given) sides = given_sides(given->repatch);
-  const GluedQuads glued = inserted_.code(given ? &sides : nullptr, rim_of(mesh, repatch.removed), halves_, most_stream_quads);
+  GluedQuads glued = inserted_.code(given ? &sides : nullptr, rim_of(mesh, repatch.removed), halves_, most_stream_quads);
+  code_turns(glued);
   name_corners(mesh, glued, repatch);
   if (!given) return true;
   if (repatch.new_vertices != given->repatch.new_vertices)

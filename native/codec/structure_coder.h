@@ -11,7 +11,7 @@
 namespace hybrid_mesh {
 
 // Of any hierarchy in a stream: what a reader makes memory for.
-inline constexpr int most_stream_quads = 1 << 24;
+inline constexpr int most_stream_quads = 1 << 23;
 
 // A hierarchy's connectivity: base, refinement and operations, grown on both sides by the same code. Base quads and those of operations are numbered
 // anew, as the stream meets them.
@@ -28,6 +28,7 @@ class StructureCoder final : private Growth {
   HybridMesh code_base();
   void code_sharp_sides(HybridMesh& mesh);
   void code_shape();
+  void code_turns(GluedQuads& glued);
   bool refined(const HybridMesh& mesh, int node) override;
   bool operation(const HybridMesh& mesh, int level, Repatch& repatch) override;
   void code_removed(const HybridMesh& mesh, Repatch& repatch, std::int64_t first);
