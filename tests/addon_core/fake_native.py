@@ -163,6 +163,17 @@ class Hierarchy:
         with open(path, "w", encoding="utf-8") as file:
             json.dump([self.low.tolist(), self.high.tolist(), self.count, metadata], file)
 
+    def save_stream(self, path, *, most_bytes=0, error=0.0):
+        """As many bytes as there are levels to be had for."""
+        if 0 < most_bytes < 10:
+            raise InvalidInput("the base alone takes about 10 bytes")
+        levels = self.count if not most_bytes else min(self.count, most_bytes // 10)
+        levels = min(levels, 2) if error else levels
+        text = "stream" + json.dumps([self.low.tolist(), self.high.tolist(), levels])
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return len(text)
+
     def check(self):
         return [] if (self.high > self.low).all() else ["the box is empty"]
 
@@ -170,10 +181,16 @@ class Hierarchy:
         return json.dumps({"levels": self.level_names, "metadata": self.metadata})
 
 
-def load_hierarchy(path):
+def load_hierarchy(path, *, most_bytes=0):
     try:
         with open(path, encoding="utf-8") as file:
-            return Hierarchy(*json.load(file))
+            text = file.read()
+        if text.startswith("stream"):
+            low, high, levels = json.loads(text[6:])
+            return Hierarchy(low, high, min(levels, most_bytes // 10) if most_bytes else levels)
+        if most_bytes:
+            raise InvalidInput(f"{os.fsdecode(path)}: is no stream")
+        return Hierarchy(*json.loads(text))
     except (ValueError, TypeError) as error:
         raise CorruptStream(f"{os.fsdecode(path)}: not a hierarchy") from error
 

@@ -50,6 +50,40 @@ def test_every_level_is_exported(command_line):
     assert command_line.outputs() == sorted(["box.hmesh", "box.plan.json", "box.report.json", "summary.csv", *levels])
 
 
+def test_encode_and_decode(command_line):
+    assert command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--levels", 3).returncode == 0
+    run = command_line.run("encode", "out/box.hmesh", "box.stream.hmesh")
+    size = (command_line.folder / "box.stream.hmesh").stat().st_size
+    assert (run.returncode, run.err, run.out) == (0, "", f"box.stream.hmesh: {size:,} bytes\n")
+    counts = {}
+    for name, *options in (("all",), ("less", "--bytes", 20), ("level", "--level", 1), ("base", "--level", 0)):
+        run = command_line.run("decode", "box.stream.hmesh", "--output", f"{name}.OBJ", *options)
+        assert (run.returncode, run.err) == (0, "")
+        counts[name] = (command_line.folder / f"{name}.OBJ").read_text().count("\nv ")
+        assert "vertices" in run.out and "faces" in run.out
+    assert counts["all"] > counts["less"] == counts["level"] > counts["base"]
+    assert command_line.run("decode", "out/box.hmesh", "--output", "whole.ply").returncode == 0
+    assert command_line.run("encode", "out/box.hmesh", "rough.hmesh", "--error", 0.1).returncode == 0
+    assert (command_line.folder / "rough.hmesh").read_text() != (command_line.folder / "box.stream.hmesh").read_text()
+    assert command_line.run("info", "rough.hmesh").returncode == 0
+
+
+def test_what_cannot_be_encoded_or_decoded_is_one_line(command_line):
+    command_line.box("box.obj")
+    assert command_line.run("remesh", "box.obj", "--output", "out").returncode == 0
+    (command_line.folder / "nothing.hmesh").write_bytes(b"")
+    for command, said in (
+        (("encode", "missing.hmesh", "a.hmesh"), "missing.hmesh: "),
+        (("encode", "nothing.hmesh", "a.hmesh"), "empty"),
+        (("encode", "box.obj", "a.hmesh"), "box.obj: not a hierarchy"),
+        (("encode", "out/box.hmesh", "a.hmesh", "--bytes", 5), "out/box.hmesh: the base alone"),
+        (("decode", "nothing.hmesh", "--output", "a.ply"), "empty"),
+        (("decode", "out/box.hmesh", "--output", "a.ply", "--bytes", 100), "no stream"),
+    ):
+        run = command_line.run(*command)
+        assert run.returncode == 1 and said in run.err and run.err.count("\n") == 1 and "a.hmesh" not in run.out, command
+
+
 def test_density_is_a_name(command_line):
     assert command_line.run("remesh", command_line.box("box.obj"), "--output", "out", "--density", "dense").returncode == 0
     assert report(command_line, "box")["settings"]["density"] == "dense"
@@ -169,8 +203,13 @@ def test_inputs_of_one_name_get_names_of_their_own(command_line):
         (("remesh", "box.obj"), "--output"),
         (("remesh", "--output", "out"), "INPUT"),
         (("unknown",), "unknown"),
-        (("encode", "a", "b"), "later"),
-        (("decode", "a"), "later"),
+        (("encode", "a"), "OUT.hmesh"),
+        (("encode", "a", "b", "--bytes", "0"), "--bytes"),
+        (("encode", "a", "b", "--error", "1"), "--error"),
+        (("encode", "a", "b", "--error", "0.1", "--bytes", "100"), "--bytes"),
+        (("decode", "a"), "--output"),
+        (("decode", "a", "--output", "b.glb"), "'b.glb'"),
+        (("decode", "a", "--output", "b.ply", "--level", "-1"), "--level"),
         (("bench",), "later"),
         (("remesh", "box.obj", "--output", "out", "--plan", "missing.json"), "missing.json"),
         (("remesh", "box.obj", "--output", "out", "--plan", "box.obj"), "JSON"),

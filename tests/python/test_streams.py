@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hierarchies as embedded streams, saved and loaded by a script."""
+
+import numpy as np
+import pytest
+from hybrid_mesh import _native
+from shapes import bent_sheet, sphere, torus
+
+
+@pytest.fixture(scope="module", params=["uniform", "open", "adaptive", "operations"])
+def hierarchy(request):
+    if request.param == "uniform":
+        return _native.remesh(*torus(), {"vertices": 2000}).hierarchy
+    if request.param == "open":
+        return _native.remesh(*bent_sheet(), {"vertices": 1000}).hierarchy
+    if request.param == "adaptive":
+        return _native.remesh(*bent_sheet(), {"vertices": 1500, "refinement": "adaptive"}).hierarchy
+    hierarchy = _native.remesh(*sphere(), {"vertices": 2000}).hierarchy
+    hierarchy.add_cubes(hierarchy.level("N1")["quad"][:1], height=2)
+    return hierarchy
+
+
+def distance(a, b):
+    return _native.compare(*(mesh[key] for mesh in (a, b) for key in ("points", "offsets", "indices")), 20000)["l2"]
+
+
+def test_all_of_it_is_the_hierarchy(hierarchy, tmp_path):
+    size = hierarchy.save_stream(tmp_path / "a.hmesh")
+    assert (tmp_path / "a.hmesh").stat().st_size == size
+    loaded = _native.load_hierarchy(tmp_path / "a.hmesh")
+    assert loaded.check() == [] and loaded.level_names == hierarchy.level_names
+    for name in hierarchy.level_names:
+        before, after = hierarchy.level(name), loaded.level(name)
+        assert len(before["points"]) == len(after["points"]) and len(before["indices"]) == len(after["indices"])
+    assert distance(hierarchy.final_mesh(), loaded.final_mesh()) < 1e-6
+    # The same points in another order.
+    before, after = (np.array(sorted(np.round(mesh.final_mesh()["points"], 4).tolist())) for mesh in (hierarchy, loaded))
+    assert np.abs(before - after).max() < 2e-4
+
+
+def test_more_of_it_is_nearer(hierarchy, tmp_path):
+    size = hierarchy.save_stream(tmp_path / "a.hmesh")
+    final = hierarchy.final_mesh()
+    errors = [distance(final, _native.load_hierarchy(tmp_path / "a.hmesh", most_bytes=size // part).final_mesh()) for part in (16, 8, 4, 2, 1)]
+    assert errors == sorted(errors, reverse=True) and errors[0] > 10 * errors[-1]
+
+
+def test_bounds(hierarchy, tmp_path):
+    size = hierarchy.save_stream(tmp_path / "a.hmesh")
+    assert hierarchy.save_stream(tmp_path / "b.hmesh", most_bytes=size // 2) == size // 2
+    assert (tmp_path / "b.hmesh").read_bytes() == (tmp_path / "a.hmesh").read_bytes()[: size // 2]
+    short = hierarchy.save_stream(tmp_path / "c.hmesh", error=1e-3)
+    assert short < size and distance(hierarchy.final_mesh(), _native.load_hierarchy(tmp_path / "c.hmesh").final_mesh()) < 1.05e-3
+    with pytest.raises(_native.InvalidInput, match="base alone"):
+        hierarchy.save_stream(tmp_path / "d.hmesh", most_bytes=10)
+    with pytest.raises(_native.InvalidInput, match="error"):
+        hierarchy.save_stream(tmp_path / "d.hmesh", error=-1)
+    assert not (tmp_path / "d.hmesh").exists()
+
+
+def test_what_is_no_stream(hierarchy, tmp_path):
+    hierarchy.save(tmp_path / "a.hmesh")
+    with pytest.raises(_native.InvalidInput, match="a.hmesh"):
+        _native.load_hierarchy(tmp_path / "a.hmesh", most_bytes=1000)
+    hierarchy.save_stream(tmp_path / "b.hmesh")
+    with pytest.raises(_native.CorruptStream, match="ends before its base"):
+        _native.load_hierarchy(tmp_path / "b.hmesh", most_bytes=10)
+    content = bytearray((tmp_path / "b.hmesh").read_bytes())
+    content[3] = 9
+    (tmp_path / "b.hmesh").write_bytes(content)
+    with pytest.raises(_native.Unsupported, match="newer"):
+        _native.load_hierarchy(tmp_path / "b.hmesh")
