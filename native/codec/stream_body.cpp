@@ -30,7 +30,7 @@ constexpr double tangential = 0.25;
 double scale_of(int kind, std::size_t component, int levels) { return weight_of(kind, levels) * (component > 0 ? tangential : 1); }
 
 // Of the bits of the base's coordinates, as many as the details' steps make worth while.
-int bits_at(int plane, int depth) { return std::min(plane + depth - 2, base_bits); }
+int bits_at(int plane, int depth) { return std::min(plane + depth - 3, base_bits); }
 
 const Frame coordinate_axes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
