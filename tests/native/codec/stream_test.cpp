@@ -64,8 +64,10 @@ void give_positions(HybridMesh& mesh, unsigned seed) {
 }
 
 void give_maps(HybridMesh& mesh) {
-  for (int q = 0; q < mesh.base_count(); ++q)
-    mesh.set_map(q, make_map(2, 0, 1, [&](double u, double v) { return Vec3(q % 3 + u, q / 3 + v, 0.4 * std::sin(2 * u + q) * std::cos(v)); }));
+  for (int q = 0; q < mesh.base_count(); ++q) {
+    const int column = q % 3, row = q / 3;
+    mesh.set_map(q, make_map(2, 0, 1, [&](double u, double v) { return Vec3(column + u, row + v, 0.4 * std::sin(2 * u + q) * std::cos(v)); }));
+  }
 }
 
 struct Sample {
