@@ -59,12 +59,12 @@ GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, con
   report.coarse_vertices = charts.mesh.vertex_count;
   descend(options.newton_steps, progress.part(0.3, 0.45));
   std::vector<int> corners = options.corners_move ? corner_motion.all() : std::vector<int>();
-  std::vector<int> cones = all_cones(charts);
   for (int round = 0; round < options.cone_rounds; ++round) {
     // Those that stay are not tried again.
     corners = corner_motion.move_downhill(corners, insertions.original());
-    cones = move_cones(charts, density, cones, insertions.original());
-    const int moved = static_cast<int>(corners.size() + cones.size());
+    // Of inner nodes all are: where one has a better place changes with the others.
+    const std::size_t moved_cones = move_cones(charts, density, all_cones(charts), insertions.original()).size();
+    const int moved = static_cast<int>(corners.size() + moved_cones);
     report.cone_moves += moved;
     if (moved == 0) break;
     descend(2, progress.part(0.45, 0.6));
