@@ -109,7 +109,7 @@ def test_a_closed_fold(tmp_path):
 
 
 def test_inverted_quads(tmp_path):
-    outcome = Outcome(tmp_path, crumpled(), "--vertices", 400)
+    outcome = Outcome(tmp_path, crumpled(), "--vertices", 600)
     check_poor(outcome)
     points, offsets, indices = outcome.final()
     corners = points[indices.reshape(-1, 4)]
