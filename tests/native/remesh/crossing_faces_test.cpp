@@ -10,7 +10,7 @@
 namespace hybrid_mesh {
 namespace {
 
-constexpr int kSide = 20;  // quads
+constexpr int kSide = 20, kMiddle = 10;  // quads
 
 // Two sheets of squares, one above the other; the lower one has a bulge of that height around its middle.
 QuadMesh two_sheets(double gap, double bulge) {
@@ -19,7 +19,7 @@ QuadMesh two_sheets(double gap, double bulge) {
     const int first = static_cast<int>(mesh.points.size());
     for (int j = 0; j <= kSide; ++j)
       for (int i = 0; i <= kSide; ++i) {
-        const double x = (i - kSide / 2) / 3.0, y = (j - kSide / 2) / 3.0;
+        const double x = (i - kMiddle) / 3.0, y = (j - kMiddle) / 3.0;
         mesh.points.emplace_back(i + 0.01 * sheet, j + 0.02 * sheet, sheet == 0 ? bulge * std::exp(-x * x - y * y) : gap);
       }
     for (int j = 0; j < kSide; ++j)
@@ -57,7 +57,7 @@ TEST(CrossingFaces, AreTakenApartWhereTheyCrossAndNowhereElse) {
     // Only part of the way back, on the way that each vertex came.
     EXPECT_LE(mesh.points[v].z(), after.points[v].z() + 1e-15);
     EXPECT_GE(mesh.points[v].z(), before.points[v].z() - 1e-15);
-    const double off = std::hypot(after.points[v].x() - kSide / 2, after.points[v].y() - kSide / 2);
+    const double off = std::hypot(after.points[v].x() - kMiddle, after.points[v].y() - kMiddle);
     if (off > 7) {
       EXPECT_EQ(mesh.points[v], after.points[v]);
     }

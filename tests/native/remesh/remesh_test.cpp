@@ -78,7 +78,8 @@ TEST(Remesh, SmallBodiesHaveTheQuadsOfACube) {
   for (int k = 0; k < 40; ++k) {
     PolygonSoup body = k % 2 == 0 ? testing::ball(4) : cube();
     const Vec3 size(1, 0.2 + 0.02 * k, k % 3 == 0 ? 0.05 : 0.6);
-    for (Vec3& p : body.points) p = p.cwiseProduct(size) + Vec3(3 * (k % 8), 3 * (k / 8), 0);
+    const int column = k % 8, row = k / 8;
+    for (Vec3& p : body.points) p = p.cwiseProduct(size) + Vec3(3 * column, 3 * row, 0);
     append(soup, body);
   }
   RemeshOptions options;
@@ -94,7 +95,8 @@ TEST(Remesh, SmallBodiesHaveTheQuadsOfACube) {
 
 TEST(Remesh, ABaseThatTakesAllVerticesIsRefusedByName) {
   PolygonSoup soup;
-  for (int k = 0; k < 760; ++k) append(soup, cube(Vec3(3 * (k % 28), 3 * (k / 28), 0)));
+  for (int row = 0; row < 20; ++row)
+    for (int column = 0; column < 38; ++column) append(soup, cube(Vec3(3 * column, 3 * row, 0)));
   RemeshOptions options;
   options.vertices = 8000;
   options.features = Features::None;
