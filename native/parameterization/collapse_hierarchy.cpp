@@ -98,11 +98,7 @@ void CollapseHierarchy::refine(const Progress& progress) {
       relax_in_sweeps(c_, density_, options_.sweeps, progress);
       swept = c_.mesh.vertex_count;
       const int rounds = std::clamp(options_.cone_rounds - 1, 0, 2);
-      std::vector<int> cones = all_cones(c_);
-      for (int round = 0; round < rounds && !cones.empty(); ++round) {
-        cones = move_cones(c_, density_, cones, allowed_);
-        report_.cone_moves += static_cast<int>(cones.size());
-      }
+      for (int round = 0; round < rounds; ++round) report_.cone_moves += static_cast<int>(move_cones(c_, density_, all_cones(c_), allowed_).size());
     }
     progress(1 - static_cast<double>(level) / levels_.size());
   }
