@@ -271,7 +271,7 @@ class QuadCoarsening : private QuadPairs {
   // An interior vertex between two quads only: the quads become one.
   bool remove_doublet(int v) {
     may_be_doublet_[v] = !mesh_.is_boundary(v) && !features_.is_on_curve(v) && excess(v) == -2;
-    if (!may_be_doublet_[v] || keeps_from_straight(v) || is_finished(components_.of[v])) return false;
+    if (!may_be_doublet_[v] || keeps_from_straight(v) || (has_bodies() && is_finished(components_.of[v]))) return false;
     std::vector<int> faces;
     int h = mesh_.out[v];
     do {
@@ -438,13 +438,14 @@ class QuadCoarsening : private QuadPairs {
     return false;
   }
 
+  bool has_bodies() const { return components_.faces.size() > 1; }
   bool is_finished(int component) const { return component >= 0 && finished_[component]; }
 
   // The triangles of a small closed component may pair to quads that clean each other away.
   void clean_sparing_small_components() {
     const State before = state();
     clean();
-    const std::vector<int> small = small_components();
+    const std::vector<int> small = has_bodies() ? small_components() : std::vector<int>();
     for (const int c : small) finished_[c] = 1;
     if (small.empty()) return;
     restore(before);
