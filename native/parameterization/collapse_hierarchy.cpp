@@ -98,7 +98,7 @@ void CollapseHierarchy::refine(const Progress& progress) {
       relax_in_sweeps(c_, density_, options_.sweeps, progress);
       swept = c_.mesh.vertex_count;
       const int rounds = std::clamp(options_.cone_rounds - 1, 0, 2);
-      for (int round = 0; round < rounds; ++round) report_.cone_moves += static_cast<int>(move_cones(c_, density_, all_cones(c_), allowed_).size());
+      for (int round = 0; round < rounds; ++round) report_.cone_moves += move_cones(c_, density_, allowed_);
     }
     progress(1 - static_cast<double>(level) / levels_.size());
   }

@@ -271,18 +271,13 @@ class ConeMotion {
 
 }  // namespace
 
-std::vector<int> all_cones(const ChartMesh& charts) {
+int move_cones(ChartMesh& charts, const Distortion& density, const std::vector<char>& allowed) {
+  ConeMotion motion(charts, density, allowed);
   std::vector<int> cones;
   for (int v = 0; v < static_cast<int>(charts.kind.size()); ++v)
     if (charts.mesh.vertex_alive(v) && charts.kind[v] == ChartMesh::Kind::Cone) cones.push_back(v);
-  return cones;
-}
-
-std::vector<int> move_cones(ChartMesh& charts, const Distortion& density, const std::vector<int>& cones, const std::vector<char>& allowed) {
-  ConeMotion motion(charts, density, allowed);
-  std::vector<int> moved;
-  for (const int cone : cones)
-    if (const int to = motion.try_move(cone, false); to >= 0) moved.push_back(to);
+  int moved = 0;
+  for (const int cone : cones) moved += motion.try_move(cone, false) >= 0;
   return moved;
 }
 

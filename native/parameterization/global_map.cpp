@@ -62,9 +62,7 @@ GlobalMapReport smooth_map(ChartMesh& charts, const PatchedSurface& surface, con
   for (int round = 0; round < options.cone_rounds; ++round) {
     // Those that stay are not tried again.
     corners = corner_motion.move_downhill(corners, insertions.original());
-    // Of inner nodes all are: where one has a better place changes with the others.
-    const std::size_t moved_cones = move_cones(charts, density, all_cones(charts), insertions.original()).size();
-    const int moved = static_cast<int>(corners.size() + moved_cones);
+    const int moved = static_cast<int>(corners.size()) + move_cones(charts, density, insertions.original());
     report.cone_moves += moved;
     if (moved == 0) break;
     descend(2, progress.part(0.45, 0.6));

@@ -47,7 +47,7 @@ class TakingBack {
     CrossingFaces pairs = crossing_faces(mesh_, progress_);
     if (pairs.empty()) return {};
     const auto keep = [&] {
-      steps_.push_back({part, pairs, inverted_faces()});
+      steps_.push_back({part, pairs, inverted_quads(mesh_)});
       for (const int v : around(pairs)) moved_[v] = 1;
     };
     keep();
@@ -88,13 +88,6 @@ class TakingBack {
 
   void place(const std::vector<double>& part) {
     for (std::size_t v = 0; v < part.size(); ++v) mesh_.points[v] = part[v] == 1 ? after_[v] : Vec3(before_[v] + part[v] * (after_[v] - before_[v]));
-  }
-
-  std::vector<int> inverted_faces() const {
-    std::vector<int> inverted;
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f)
-      if (mesh_.offsets[f + 1] - mesh_.offsets[f] == 4 && scaled_jacobian(mesh_, f) <= 0) inverted.push_back(static_cast<int>(f));
-    return inverted;
   }
 
   // The vertices of the faces that cross, and of all faces around these.

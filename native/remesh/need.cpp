@@ -21,10 +21,10 @@ constexpr double kCrossing = 0.7;  // the size of quads, beside those that were 
 constexpr double kWorth = 0.95;    // times as large: hardly smaller quads change nothing
 constexpr double kSmallest = 0.5;  // of all, beside those that need nothing
 
-Vec3 middle_of(const QuadMesh& mesh, std::size_t f) {
+Vec3 middle_of(const QuadMesh& mesh, int quad) {
   Vec3 sum = Vec3::Zero();
-  for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) sum += mesh.points[mesh.indices[i]];
-  return sum / static_cast<double>(mesh.offsets[f + 1] - mesh.offsets[f]);
+  for (int corner = 0; corner < 4; ++corner) sum += mesh.points[mesh.indices[mesh.offsets[quad] + corner]];
+  return sum / 4;
 }
 
 }  // namespace
@@ -51,8 +51,7 @@ bool Need::learn_from(const QuadMesh& mesh, const Progress& progress) {
   for (const Vec3& p : mesh.points)
     if (const double d = std::sqrt(on_surface.closest(p).squared_distance); d > enough) need_around(p, enough / d);
   for (const auto& [faces, place] : crossing_faces(mesh, progress)) need_around(place, kCrossing);
-  for (std::size_t f = 0; f < mesh.face_count(); ++f)
-    if (mesh.offsets[f + 1] - mesh.offsets[f] == 4 && scaled_jacobian(mesh, f) <= 0) need_around(middle_of(mesh, f), kCrossing);
+  for (const int quad : inverted_quads(mesh)) need_around(middle_of(mesh, quad), kCrossing);
   bool any = false;
   for (std::size_t v = 0; v < wanted.size(); ++v) {
     const double size = std::max(kSmallest, size_[v] * wanted[v]);

@@ -22,6 +22,13 @@ double scaled_jacobian(const QuadMesh& mesh, std::size_t face) {
   return least;
 }
 
+std::vector<int> inverted_quads(const QuadMesh& mesh) {
+  std::vector<int> inverted;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    if (mesh.offsets[f + 1] - mesh.offsets[f] == 4 && scaled_jacobian(mesh, f) <= 0) inverted.push_back(static_cast<int>(f));
+  return inverted;
+}
+
 QuadQuality quad_quality(const QuadMesh& mesh) {
   QuadQuality q;
   std::vector<double> jacobians;

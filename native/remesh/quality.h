@@ -17,6 +17,9 @@ struct QuadQuality {
 // Of a face that is a quad.
 double scaled_jacobian(const QuadMesh& mesh, std::size_t face);
 
+// The quads whose scaled Jacobian is not positive.
+std::vector<int> inverted_quads(const QuadMesh& mesh);
+
 QuadQuality quad_quality(const QuadMesh& mesh);
 
 // Per vertex: is it irregular?

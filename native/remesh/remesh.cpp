@@ -167,6 +167,7 @@ CandidateSearch best_by_need(const RemeshTask& task) {
                           !task.source.density.sizes && !task.source.mirror && !task.base.series;
   if (!best.candidate || !may_change) return best;
   Badness least = badness(task, *best.candidate);
+  if (!least.quads_are_too_large) return best;
   const TriangleSurface placed = task.source.placement.to_unit(task.source.repaired);
   Need need(placed);
   for (int k = 0; k < tries && least.quads_are_too_large && need.learn_from(best.candidate->final_mesh, task.progress.part(1, 1)); ++k) {

@@ -74,30 +74,25 @@ class SampleFit {
   void take_apart(const std::vector<Vec3>& on_surface) {
     const TakenBack first = take_back_crossings(mesh_, on_surface, progress_);
     if (!first.any) return;
-    const Distances before = distances(mesh_);
+    const double before = squared_distance(mesh_);
     QuadMesh again = mesh_;
     for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].face = first_face_[i];  // they may have walked to the other sheet
     fit(again, 1);
     unfold(again);
     const TakenBack second = take_back_crossings(again, mesh_.points, progress_);
-    const Distances after = distances(again);
-    if (second.left <= first.left && after.sum <= before.sum) mesh_ = std::move(again);
+    const double after = squared_distance(again);
+    if (second.left <= first.left && after <= before) mesh_ = std::move(again);
     const std::vector<Vec3> folded = mesh_.points;
     unfold(mesh_);
     take_back_crossings(mesh_, folded, progress_);
   }
 
-  struct Distances {
-    double sum = 0, most = 0;  // squared; the sum with the samples' weights
-  };
-  Distances distances(const QuadMesh& mesh) {
+  // The sum over the samples, with their weights.
+  double squared_distance(const QuadMesh& mesh) {
     const std::vector<double> squared = squared_distances(mesh, samples_);
-    Distances d;
-    for (std::size_t i = 0; i < squared.size(); ++i) {
-      d.sum += samples_[i].weight * squared[i];
-      d.most = std::max(d.most, squared[i]);
-    }
-    return d;
+    double sum = 0;
+    for (std::size_t i = 0; i < squared.size(); ++i) sum += samples_[i].weight * squared[i];
+    return sum;
   }
 
   QuadMesh& mesh_;

@@ -19,6 +19,12 @@ def move(obj, change):
     obj.data.update()
 
 
+def edit(obj, change):
+    """Moves the vertices of the active level, and the others after them."""
+    move(obj, change)
+    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+
+
 def turn(angle, axis):
     return numpy.array(mathutils.Matrix.Rotation(angle, 3, axis))
 
@@ -59,8 +65,7 @@ def test_finer_levels_and_the_preview_follow(world, edited):
         world_points = points @ matrix[:3, :3].T + matrix[:3, 3]
         return (world_points @ rotation.T - matrix[:3, 3]) @ numpy.linalg.inv(matrix[:3, :3]).T
 
-    move(levels["N1"], turned)
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N1"], turned)
     for name, obj in levels.items():
         expected = before[name] if name == "N0" else turned(before[name])
         assert numpy.abs(places(obj) - expected).max() < 1e-5, name
@@ -92,11 +97,9 @@ def test_one_edit_after_the_other(world, edited):
     levels, _ = edited
     finest = levels[list(levels)[-1]]
     before = places(finest)
-    move(levels["N1"], lambda points: points + (0, 0, 1))
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N1"], lambda points: points + (0, 0, 1))
     activate(world, levels["N0"])
-    move(levels["N0"], lambda points: points + (0, 0, 1))
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N0"], lambda points: points + (0, 0, 1))
     assert numpy.abs(places(finest) - before - (0, 0, 2)).max() < 1e-5
 
 
@@ -107,11 +110,9 @@ def test_what_was_sculpted_on_a_finer_level_goes_with_an_edit_of_a_coarser_one(w
     activate(world, finest)
     bump = places(finest)
     bump[7] += (0.3, 0, 0)
-    move(finest, lambda _: bump)
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(finest, lambda _: bump)
     activate(world, levels["N0"])
-    move(levels["N0"], lambda points: points + (0, 0, 1))
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N0"], lambda points: points + (0, 0, 1))
     assert numpy.abs(places(finest) - bump - (0, 0, 1)).max() < 1e-5
 
 
@@ -166,8 +167,7 @@ def test_undo_and_redo_restore_every_level(world, edited):
     bpy.ops.ed.undo()
     bpy.ops.ed.undo()
     world.select(bpy.data.objects[names["N0"]])
-    move(bpy.data.objects[names["N0"]], lambda points: points + (0, 1, 0))
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(bpy.data.objects[names["N0"]], lambda points: points + (0, 1, 0))
     for name, obj in names.items():
         assert numpy.abs(places(bpy.data.objects[obj]) - states[0][name] - (0, 1, 0)).max() < 1e-5
 
@@ -212,8 +212,7 @@ def test_an_operation_goes_with_its_surroundings(world):
     before = {name: places(obj) for name, obj in levels.items()}
     activate(world, levels["N0"])
     rotation = turn(0.9, "Y")
-    move(levels["N0"], lambda points: points @ rotation.T)
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N0"], lambda points: points @ rotation.T)
     for name, obj in levels.items():
         assert numpy.abs(places(obj) - before[name] @ rotation.T).max() < 1e-5, name
     # M1 is a level of its own, whose operations' quads follow.
@@ -239,8 +238,7 @@ def test_a_reopened_file_goes_on(world, edited, tmp_path):
     bump = places(levels["N2"])
     bump[7] += (0.3, 0, 0)
     activate(world, levels["N2"])
-    move(levels["N2"], lambda _: bump)
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N2"], lambda _: bump)
     # What was edited and not carried is so still.
     move(levels["N1"], lambda points: points + (0, 0, 1))
     before = {name: places(obj) for name, obj in levels.items()}
@@ -254,8 +252,7 @@ def test_a_reopened_file_goes_on(world, edited, tmp_path):
     reopened(tmp_path)
     levels = {name: bpy.data.objects[obj] for name, obj in names.items()}
     activate(world, levels["N0"])
-    move(levels["N0"], lambda points: points + (0, 1, 0))
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N0"], lambda points: points + (0, 1, 0))
     assert numpy.abs(places(levels["N2"]) - bump - (0, 1, 1)).max() < 1e-5
 
 
@@ -263,8 +260,7 @@ def test_no_region_of_edited_levels_is_laid_out_anew(world, edited, tmp_path):
     levels, _ = edited
     name = levels["N1"].name
     levels["N1"].data.polygons[0].select = True
-    move(levels["N1"], lambda points: points + (0, 0, 1))
-    assert bpy.ops.hybrid_mesh.update_levels() == {"FINISHED"}
+    edit(levels["N1"], lambda points: points + (0, 0, 1))
     refused(bpy.ops.hybrid_mesh.repatch_region, "its levels were edited", layout_kind="AUTOMATIC")
     reopened(tmp_path)
     activate(world, bpy.data.objects[name])

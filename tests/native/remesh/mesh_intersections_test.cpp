@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "generated_surfaces.h"
+#include "remesh/meshes.h"
 #include "shapes.h"
 
 namespace hybrid_mesh {
 namespace {
 
+using testing::mesh_of;
 using testing::repaired;
 
 // Two sheets of squares; the second one stands across the first one, along a line of it.
@@ -26,14 +28,6 @@ PolygonSoup crossing_sheets(double shift = 0) {
       }
   }
   return soup;
-}
-
-QuadMesh mesh_of(const PolygonSoup& soup, const Placement& placement = {}) {
-  QuadMesh mesh;
-  for (const Vec3& p : soup.points) mesh.points.push_back(placement.to_unit(p));
-  mesh.offsets = soup.offsets;
-  mesh.indices = soup.indices;
-  return mesh;
 }
 
 MeshIntersections found(const QuadMesh& mesh, const PolygonSoup& input, const Placement& placement = {}) {

@@ -6,12 +6,14 @@
 #include <cmath>
 
 #include "generated_surfaces.h"
+#include "remesh/meshes.h"
 #include "remesh/remesh.h"
 #include "shapes.h"
 
 namespace hybrid_mesh {
 namespace {
 
+using testing::mesh_of;
 using testing::repaired;
 
 // A sheet of unit size, with a bump of that height in its middle.
@@ -23,14 +25,6 @@ PolygonSoup sheet(int n, double bump) {
     p.z() = bump * std::exp(-x * x - y * y);
   }
   return soup;
-}
-
-QuadMesh mesh_of(const PolygonSoup& soup) {
-  QuadMesh mesh;
-  mesh.points = soup.points;
-  mesh.offsets = soup.offsets;
-  mesh.indices = soup.indices;
-  return mesh;
 }
 
 double off_middle(const Vec3& p) { return std::hypot(p.x() - 0.5, p.y() - 0.5); }

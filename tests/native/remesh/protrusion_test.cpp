@@ -4,20 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "generated_surfaces.h"
+#include "remesh/meshes.h"
 
 namespace hybrid_mesh {
 namespace {
 
 using testing::ball;
+using testing::mesh_of;
 using testing::repaired;
-
-QuadMesh mesh_of(const PolygonSoup& soup) {
-  QuadMesh mesh;
-  mesh.points = soup.points;
-  mesh.offsets = soup.offsets;
-  mesh.indices = soup.indices;
-  return mesh;
-}
 
 // A ball that is drawn out, or dented, above a height by so much.
 PolygonSoup changed_ball(double by) {
