@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "base/disjoint_sets.h"
@@ -38,8 +37,8 @@ constexpr double kMuchLonger = 1.65;    // times the edges that curves are to ha
 constexpr int kLeastOnMirror = 3;       // triangles at its vertices
 constexpr int kLeastOfClosedCurve = 4;  // edges: with fewer the quads beside it have straight corners
 
-// When so many times the faces asked for are left, flips begin.
-constexpr double kFlipFaces = 12;
+// When so many times the faces asked for are left, the base takes shape.
+constexpr double kShapingFaces = 12;
 // From so many faces on the order of collapses is kept exact, so that the base does not depend on how the queue works; before that single collapses
 // of a fine surface matter little, and exactness would take two thirds of the time.
 constexpr int kExactFaces = 120000;
@@ -64,14 +63,11 @@ class Decimation {
 
   void run(const Progress& progress) {
     const int initial = mesh_.face_count;
-    int next_flips = static_cast<int>(0.7 * std::min<double>(initial, kFlipFaces * options_.target_faces));
+    int next_refill = static_cast<int>(0.7 * std::min<double>(initial, kShapingFaces * options_.target_faces));
     refill();
     int steps = 0;
     while (mesh_.face_count > options_.target_faces || loose_ > 0) {
-      if (heap_.empty() && !loop_.empty() && !flipped_) {
-        flips();
-        refill();
-      }
+      if (heap_.empty() && !loop_.empty() && !shaping_) begin_shaping();
       if (heap_.empty()) break;
       if (++steps % 512 == 0)
         progress(std::clamp((std::log(initial) - std::log(mesh_.face_count)) / std::max(1e-9, std::log(initial) - std::log(options_.target_faces)),
@@ -79,14 +75,12 @@ class Decimation {
       const Candidate best = pop();
       if (best.half_edge < 0 || (mesh_.face_count <= options_.target_faces && !is_loose(best.vertex))) continue;
       collapse(best.half_edge);
-      if (mesh_.face_count <= next_flips) {
-        flips();
-        next_flips = static_cast<int>(0.7 * mesh_.face_count);
-        refill();
+      if (mesh_.face_count <= next_refill) {
+        next_refill = static_cast<int>(0.7 * mesh_.face_count);
+        begin_shaping();
       }
     }
     if (!features().empty()) balance_curves();
-    flips();
     dress_mirror();
     progress(1);
   }
@@ -261,10 +255,10 @@ class Decimation {
   bool is_loose(int v) const { return !options_.fixed.empty() && !options_.fixed[v] && mesh_.is_boundary(v); }
 
   // Would an inner edge join two vertices of one boundary loop? A map of the surface at this stage could give a triangle between it and the boundary
-  // no area, where a straight side of the base runs along it. What only decides on the base, from the first flips on, may have such edges.
+  // no area, where a straight side of the base runs along it. What only decides on the base, while that takes shape, may have such edges.
   bool makes_chord(int h, std::vector<int>& around) const {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
-    if (loop_.empty() || flipped_ || loop_[u] < 0 || loop_[v] >= 0) return false;
+    if (loop_.empty() || shaping_ || loop_[u] < 0 || loop_[v] >= 0) return false;
     mesh_.ring(v, around);
     return std::any_of(around.begin(), around.end(),
                        [&](int w) { return loop_[w] == loop_[u] && w != u && w != mesh_.apex(h) && (o < 0 || w != mesh_.apex(o)); });
@@ -285,7 +279,7 @@ class Decimation {
   // Only where the base takes shape: a cut leaves many of them.
   bool is_bare(int v, int triangles) const { return is_inside_mirror(v) && triangles < kLeastOnMirror; }
   bool bares_mirror(int h) const {
-    if (options_.on_mirror.empty() || mesh_.face_count > kFlipFaces * options_.target_faces) return false;
+    if (options_.on_mirror.empty() || mesh_.face_count > kShapingFaces * options_.target_faces) return false;
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h], apex = mesh_.apex(h);
     if (is_bare(apex, valences_[apex] - 2)) return true;
     if (o >= 0) return is_bare(mesh_.apex(o), valences_[mesh_.apex(o)] - 2);
@@ -357,6 +351,12 @@ class Decimation {
     std::make_heap(heap_.begin(), heap_.end(), is_dearer);
   }
 
+  // All costs anew: from here on those that are stale would decide on the base.
+  void begin_shaping() {
+    shaping_ = true;
+    refill();
+  }
+
   void touch(int v) {
     if (queued_[v] == Queued::No || keeps_exact())
       push(cheapest(v, star_));
@@ -387,59 +387,11 @@ class Decimation {
     for (const int w : ring_) touch(w);
   }
 
-  double flip_gain(int h) {
-    const int o = mesh_.opposite[h];
-    const int a = mesh_.from(h), b = mesh_.to(h), c = mesh_.apex(h), d = mesh_.apex(o);
-    const Vec3 &A = points_[a], &B = points_[b], &C = points_[c], &D = points_[d];
-    const auto angle = [](const Vec3& at, const Vec3& p, const Vec3& q) {
-      const Vec3 x = p - at, y = q - at;
-      return std::atan2(x.cross(y).norm(), x.dot(y));
-    };
-    const Vec3 n1 = (B - A).cross(C - A).normalized(), n2 = (A - B).cross(D - B).normalized();
-    const Vec3 m1 = (D - C).cross(A - C), m2 = (C - D).cross(B - D);
-    const Vec3 mean = n1 + n2;
-    if (!(m1.dot(mean) > 0) || !(m2.dot(mean) > 0)) return -1;
-    const double dihedral = m1.normalized().dot(m2.normalized()) - n1.dot(n2);
-    const double delaunay = (angle(C, A, B) + angle(D, A, B)) - (angle(A, C, D) + angle(B, C, D));
-    // What is won at the start of a half-edge by so many edges more beside it.
-    const auto won = [&](int g, int change) {
-      const int w = mesh_.from(g);
-      double x = valences_[w] - (mesh_.is_boundary(w) ? 4 : 6);
-      if (features().is_on_curve(w)) {
-        const MeshFeatures::Sector sector = features().sector(mesh_, g);
-        x = MeshFeatures::sector_triangles(mesh_, sector) -
-            std::max(1.0, std::round(features().sector_angle(mesh_, points_, sector) * 3 / std::numbers::pi));
-      }
-      return x * x - (x + change) * (x + change);
-    };
-    const double valence = won(h, -1) + won(o, -1) + won(EditMesh::prev(h), 1) + won(EditMesh::prev(o), 1);
-    return 0.15 * valence + 0.5 * delaunay + 2 * dihedral;
-  }
-
   void flip(int h) {
     --valences_[mesh_.from(h)], --valences_[mesh_.to(h)];
     ++valences_[mesh_.apex(h)], ++valences_[mesh_.apex(mesh_.opposite[h])];
     mesh_.flip(h);
     log_.push_back({MeshEdit::Kind::Flip, h});
-  }
-
-  void flips() {
-    flipped_ = true;
-    std::vector<int> halves;
-    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h)
-      if (mesh_.alive[h / 3]) halves.push_back(h);
-    for (int sweep = 0; sweep < 3; ++sweep) {
-      int count = 0;
-      for (const int h : halves) {
-        if (mesh_.opposite[h] < h) continue;
-        if (is_on_mirror(mesh_.apex(h)) && is_on_mirror(mesh_.apex(mesh_.opposite[h]))) continue;
-        if (is_bare(mesh_.from(h), valences_[mesh_.from(h)] - 2) || is_bare(mesh_.to(h), valences_[mesh_.to(h)] - 2)) continue;
-        if (!features().can_flip(mesh_, h) || flip_gain(h) <= 0.05 || !mesh_.can_flip(h)) continue;
-        flip(h);
-        ++count;
-      }
-      if (count == 0) return;
-    }
   }
 
   EditMesh& mesh_;
@@ -457,7 +409,7 @@ class Decimation {
   std::vector<int> on_curve_;  // per feature curve: its vertices, but corners
   std::vector<char> closed_;   // per feature curve
   std::vector<int> loop_;      // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
-  bool flipped_ = false;
+  bool shaping_ = false;
   int loose_ = 0;
 };
 

@@ -32,10 +32,10 @@ struct DecimationOptions {
   std::vector<char> on_mirror;
 };
 
-// Collapses and flips `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are
-// left or nothing can be collapsed; closed components keep enough for the quads of a cube; every operation is appended to `log`. Vertices stay where
-// they are, so that those left are points of the input. Refuses an operation for topology alone; shape, evenness, valence and the distance to the
-// surface enter through its cost. Returns what each vertex left stands for.
+// Collapses `mesh`, whose vertices lie at `points` (scaled to a unit bounding-box diagonal), until at most `target_faces` are left or nothing can be
+// collapsed, and flips a few edges where a curve or a mirror could not be made even otherwise; closed components keep enough for the quads of a cube;
+// every operation is appended to `log`. Vertices stay where they are, so that those left are points of the input. Refuses an operation for topology
+// alone; shape, evenness, valence and the distance to the surface enter through its cost. Returns what each vertex left stands for.
 std::vector<VertexQuadric> decimate(EditMesh& mesh, const std::vector<Vec3>& points, const DecimationOptions& options, std::vector<MeshEdit>& log,
                                     const Progress& progress);
 
