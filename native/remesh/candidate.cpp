@@ -293,7 +293,8 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   Found<Candidate> missing;  // leaves a level of the budget unused, for a few quads
   int misses = 0;
   const bool features = target.features && keeps_features(task);
-  const std::size_t tried = features ? std::min(requests.size(), kFeatureRequests) : requests.size();
+  const std::size_t most = !features ? requests.size() : task.source.features_are_crowded ? 1 : kFeatureRequests;
+  const std::size_t tried = std::min(requests.size(), most);
   for (const BaseRequest& request : std::span(requests).first(tried)) {
     Found<Candidate> c = found([&] { return make_candidate(task, budget, request, features, working); });
     if (c && just_misses(task, budget, *c)) {

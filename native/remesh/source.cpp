@@ -45,8 +45,8 @@ void close_small_handles(Source& source, double length, const Progress& progress
   }
 }
 
-// Fewer vertices a corner of features have no room for the quads around it.
-constexpr double kVerticesACorner = 10;
+// Fewer vertices a corner of features have no room for the quads around it: a cube of 24 quads has 3.25. Below the second number there often is none.
+constexpr double kLeastVerticesACorner = 3, kVerticesACorner = 10;
 
 }  // namespace
 
@@ -57,8 +57,12 @@ void look_for_features(Source& source, const RemeshOptions& options) {
   const FeatureGraph graph = find_features(source.repaired, *wanted);
   source.has_features = !graph.empty();
   source.feature_corners = static_cast<int>(std::count(graph.corners.begin(), graph.corners.end(), 1));
-  source.keeps_features = source.has_features && (options.vertices == 0 || kVerticesACorner * source.copies() * source.feature_corners <=
-                                                                               static_cast<double>(options.vertices));
+  const double corners = source.copies() * source.feature_corners;
+  const auto has = [&](double vertices_a_corner) {
+    return options.vertices == 0 || vertices_a_corner * corners <= static_cast<double>(options.vertices);
+  };
+  source.keeps_features = source.has_features && has(kLeastVerticesACorner);
+  source.features_are_crowded = !has(kVerticesACorner);
 }
 
 std::optional<FeatureOptions> feature_options(Features features, double angle) {

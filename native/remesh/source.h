@@ -32,13 +32,14 @@ struct Source {
   int copies() const { return mirror ? 2 : 1; }  // of `repaired` in the mesh that is made
   // Of the whole with symmetry: the half and its mirror image, of unit size, which is what the mesh is to be like.
   std::shared_ptr<const DistanceReference> symmetric;
-  nlohmann::ordered_json symmetry;  // of the report; null: none was asked for
-  Placement placement;              // that brings it to unit size
-  double area = 0;                  // of unit size
-  bool has_features = false;        // sharp edges of the kind that is asked for
-  bool keeps_features = false;      // ... and is there room for them in the mesh that is asked for?
-  int feature_corners = 0;          // where they end, meet or turn
-  Density density;                  // that quads are to have
+  nlohmann::ordered_json symmetry;    // of the report; null: none was asked for
+  Placement placement;                // that brings it to unit size
+  double area = 0;                    // of unit size
+  bool has_features = false;          // sharp edges of the kind that is asked for
+  bool keeps_features = false;        // ... and is there room for them in the mesh that is asked for?
+  bool features_are_crowded = false;  // ... but not much
+  int feature_corners = 0;            // where they end, meet or turn
+  Density density;                    // that quads are to have
   std::string fingerprint;
   std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
 };

@@ -19,6 +19,7 @@ constexpr double kManyWidths = 2;         // is worth knowing
 constexpr double kManyInverted = 0.001;   // of the quads
 constexpr double kManyPairs = 10;         // of faces that cross: twice as bad as one
 constexpr double kEnoughVertices = 0.98;  // of those allowed
+constexpr double kExact = 1e-6;           // a distance below which more vertices gain nothing
 
 std::string widths(double distance, const Finished& f) { return formatted("%.1f", distance / f.width) + " widths of its quads"; }
 
@@ -92,7 +93,8 @@ std::optional<Reason> few_vertices(const Finished& f) {
   const bool base_is_as_told = uniform && (options.base == BaseSize::Given || f.candidate.base_given);
   const std::int64_t used = whole_vertices(f.candidate.final_mesh, f.task.source);
   const auto made = static_cast<double>(used), allowed = static_cast<double>(options.vertices);
-  if (options.vertices == 0 || other_bound || base_is_as_told || made >= kEnoughVertices * allowed) return {};
+  const bool is_exact = f.distance.hausdorff < kExact;
+  if (options.vertices == 0 || other_bound || base_is_as_told || is_exact || made >= kEnoughVertices * allowed) return {};
   const std::string left = !uniform                            ? "no more of its quads could be split"
                            : options.base == BaseSize::Minimal ? "the next level would have too many; an automatic base (base_quads) or adaptive "
                                                                  "refinement uses them"

@@ -2,6 +2,7 @@
 // Solids with flat faces and sharp edges, made up so that tests need no files.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -50,6 +51,33 @@ inline PolygonSoup frame() {
     polygons.push_back({j + 4, i + 4, i + 12, j + 12});
     polygons.push_back({j, i, i + 4, j + 4});
     polygons.push_back({i + 8, j + 8, j + 12, i + 12});
+  }
+  return soup_of(points, polygons);
+}
+
+// So many cubes apart from each other, each turned in its own way, with 2 x 2 squares a face.
+inline PolygonSoup cubes(int count) {
+  std::vector<Vec3> points;
+  std::vector<std::vector<int>> polygons;
+  for (int k = 0; k < count; ++k) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.4 * k, Vec3(1, 0.7 * k, -0.3).normalized()).toRotationMatrix();
+    std::array<int, 27> number{};
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 p(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      if (i == 13) continue;
+      number[i] = static_cast<int>(points.size());
+      points.push_back(turn * p + Vec3(5 * k, 0, 0));
+    }
+    const std::array<int, 3> step{1, 3, 9};
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 2})
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j) {
+            const int du = step[(axis + 1) % 3], dv = step[(axis + 2) % 3], at = side * step[axis] + i * du + j * dv;
+            std::vector<int> square{number[at], number[at + du], number[at + du + dv], number[at + dv]};
+            if (side == 0) std::reverse(square.begin(), square.end());
+            polygons.push_back(square);
+          }
   }
   return soup_of(points, polygons);
 }

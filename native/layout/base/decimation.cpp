@@ -23,6 +23,8 @@ namespace {
 
 // Of a closed component: enough for its quads to be paired and cleaned up.
 constexpr int kLeastClosedFaces = 4 * kLeastClosedQuads;
+// ... and where curves bound its quads, which are not cleaned up: those of a cube.
+constexpr int kLeastFacesBetweenCurves = 2 * kLeastClosedQuads;
 
 // The cheapest collapse that takes a vertex away; half_edge -1: there is none.
 struct Candidate {
@@ -147,6 +149,12 @@ class Decimation {
   }
   // Takes the cheapest vertex away from a curve.
   bool shorten(int curve) {
+    int best = cheapest_on(curve);
+    if (best < 0 && flip_beside(curve)) best = cheapest_on(curve);
+    return best >= 0 && apply(best, kLeastFacesBetweenCurves);
+  }
+  // The half-edge along which that vertex goes, -1: none can.
+  int cheapest_on(int curve) {
     double least = std::numeric_limits<double>::infinity();
     int best = -1;
     for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
@@ -159,9 +167,28 @@ class Decimation {
           if (cost < least) least = cost, best = h;
         }
     }
-    if (best < 0) return false;
-    apply(best);
-    return true;
+    return best;
+  }
+  // A vertex does not go along the edge of a triangle of which another edge is on a curve, too: that one would be merged with the third. Flips the
+  // third edges of such triangles.
+  bool flip_beside(int curve) {
+    bool any = false;
+    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
+      if (!mesh_.alive[h / 3] || !features().on(mesh_, h) || features().curves()[mesh_.edge[h]] != curve) continue;
+      const int next = EditMesh::next(h), previous = EditMesh::prev(h);
+      if (features().on(mesh_, next) == features().on(mesh_, previous)) continue;
+      const int third = features().on(mesh_, next) ? previous : next;
+      if (mesh_.opposite[third] < 0 || !features().can_flip(mesh_, third) || !mesh_.can_flip(third) || folds(third)) continue;
+      flip(third);
+      any = true;
+    }
+    return any;
+  }
+  // Would a flip fold the two triangles? One of them may have no area.
+  bool folds(int h) const {
+    const Vec3 &a = points_[mesh_.from(h)], &b = points_[mesh_.to(h)], &c = points_[mesh_.apex(h)], &d = points_[mesh_.apex(mesh_.opposite[h])];
+    const Vec3 normal = (b - a).cross(c - a) + (a - b).cross(d - b);
+    return !((a - c).cross(d - c).dot(normal) > 0) || !((b - d).cross(c - d).dot(normal) > 0);
   }
 
   // Does the collapse keep the curves, and to each a vertex more than it needs? That one can go where the triangles beside it are to be paired.
@@ -367,10 +394,11 @@ class Decimation {
   void collapse(int h) {
     if (mesh_.can_collapse(h) && keeps_curves(h) && !makes_chord(h, star_.around) && !makes_bridge(h, star_.around) && !bares_mirror(h)) apply(h);
   }
-  void apply(int h) {
+  // Returns whether the mesh has changed: closed components keep so many faces.
+  bool apply(int h, int least_faces = kLeastClosedFaces) {
     const int v = mesh_.from(h), u = mesh_.to(h), o = mesh_.opposite[h];
     if (const int c = components_.of[v]; c >= 0) {
-      if (components_.faces[c] - 2 < kLeastClosedFaces) return;
+      if (components_.faces[c] - 2 < least_faces) return false;
       components_.faces[c] -= 2;
     }
     if (features().is_on_curve(v)) --on_curve_[features().curves()[mesh_.edge[h]]];
@@ -385,6 +413,7 @@ class Decimation {
     mesh_.ring(u, ring_);
     touch(u);
     for (const int w : ring_) touch(w);
+    return true;
   }
 
   void flip(int h) {
