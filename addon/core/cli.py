@@ -148,7 +148,12 @@ def info(arguments):
 
 
 def encode(arguments):
-    job = {"kind": "encode", "path": arguments.file, "output": arguments.output, "bytes": arguments.bytes or 0, "error": arguments.error or 0.0}
+    if arguments.exact and arguments.source:
+        raise WrongArguments("--exact keeps the final mesh, --source fits it to the scan: one of them")
+    job = {
+        "kind": "encode", "path": arguments.file, "output": arguments.output, "bytes": arguments.bytes or 0, "error": arguments.error or 0.0,
+        "exact": arguments.exact, "source": arguments.source,
+    }  # fmt: skip
     return _answer(job, arguments.timeout, f"{arguments.file}: ", lambda answer: _show(f"{arguments.output}: {answer['bytes']:,} bytes"))
 
 
@@ -261,8 +266,10 @@ def _parser():
     bounds.add_argument("--bytes", type=_whole(1), metavar="N", help="hard upper bound on the file's size")
     bounds.add_argument(
         "--error", type=_fraction, metavar="E",
-        help="the shortest stream with this L2 distance from the final mesh (not from the original surface), a fraction of the bounding-box diagonal",
+        help="the shortest stream with this L2 distance from SCAN or, without --source, from the final mesh, a fraction of the bounding-box diagonal",
     )  # fmt: skip
+    command.add_argument("--source", metavar="SCAN", help="the mesh that was remeshed: vertices are moved to where fewer bytes come as close to it (default: to what the maps know of it)")
+    command.add_argument("--exact", action="store_true", help="leave all vertices where they are")
     command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
 
     command = commands.add_parser("decode", help="a mesh of a .hmesh", allow_abbrev=False)

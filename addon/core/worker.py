@@ -121,7 +121,12 @@ def encode(job):
     module = native()
     refuse_unreadable(job["path"])
     hierarchy = module.load_hierarchy(job["path"])
-    return {"bytes": hierarchy.save_stream(job["output"], most_bytes=job["bytes"], error=job["error"])}
+    surface = None
+    if job["source"]:
+        refuse_unreadable(job["source"])
+        surface = module.read_mesh(job["source"])
+    written = hierarchy.save_stream(job["output"], most_bytes=job["bytes"], error=job["error"], exact=job["exact"], surface=surface)
+    return {"bytes": written}
 
 
 def decode(job):

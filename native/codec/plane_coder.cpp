@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "codec/coefficient_scale.h"
 #include "hierarchy/vertex_index.h"
 
 namespace hybrid_mesh {
@@ -75,11 +76,7 @@ CoefficientLayout coefficient_layout(const HybridMesh& hierarchy, const WaveletS
   std::vector<int> item_at(fine.vertex_count(), -1);
   for (const DetailVertex& detail : step.details()) {
     item_at[detail.vertex] = static_cast<int>(layout.items.size());
-    layout.items.push_back({detail.vertex,
-                            detail.kind == DetailKind::Edge   ? 0
-                            : detail.kind == DetailKind::Face ? 1
-                                                              : 2,
-                            detail.kind == DetailKind::Inserted});
+    layout.items.push_back({detail.vertex, coefficient_kind(detail.kind), detail.kind == DetailKind::Inserted});
   }
   for (int v = 0; v < static_cast<int>(fine.vertex_count()); ++v) {
     if (item_at[v] >= 0) continue;

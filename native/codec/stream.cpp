@@ -8,8 +8,10 @@
 #include <optional>
 #include <string>
 
+#include "codec/rate_fit.h"
 #include "codec/stream_body.h"
 #include "hierarchy/vertex_index.h"
+#include "remesh/surface_samples.h"
 #include "surface/distance.h"
 
 namespace hybrid_mesh {
@@ -59,10 +61,9 @@ Decoded decoded(const std::uint8_t* data, std::size_t size, std::shared_ptr<cons
   return {std::move(geometry), std::move(content)};
 }
 
-// The points of a hierarchy's final mesh at the vertices of another that has the same ones under other names.
+// The points of a final mesh at the vertices of another that has the same ones under other names.
 template <class GivenVertex>
-std::vector<Vec3> points_at(const HybridMesh& hierarchy, const QuadMesh& mesh, const GivenVertex& given_vertex) {
-  const QuadMesh given = hierarchy.final_mesh();
+std::vector<Vec3> points_at(const QuadMesh& given, const QuadMesh& mesh, const GivenVertex& given_vertex) {
   if (given.vertex_count() != mesh.vertex_count() || given.face_count() != mesh.face_count())
     throw Error(ErrorCode::Internal, "a stream's mesh differs from the one that was given");
   const VertexIndex find(given.vertex);
@@ -75,6 +76,19 @@ std::vector<Vec3> points_at(const HybridMesh& hierarchy, const QuadMesh& mesh, c
     points.push_back(given.points[v]);
   }
   return points;
+}
+
+// The final mesh, with its vertices where the fewest details are needed if the options and the hierarchy allow it.
+QuadMesh fitted_mesh(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
+  QuadMesh mesh = hierarchy.final_mesh();
+  if (options.fit == StreamFit::None) return mesh;
+  for (const Vec3& point : mesh.points)
+    if (!point.allFinite()) return mesh;
+  if (options.surface) return fit_for_rate(hierarchy, *options.surface, RateFitOptions(), progress);
+  if (!hierarchy.has_maps()) return mesh;
+  const PolygonSoup surface = mapped_surface(hierarchy);
+  if (surface.polygon_count() == 0 || !lies_on(mesh, surface, progress)) return mesh;
+  return fit_for_rate(hierarchy, surface, RateFitOptions(), progress);
 }
 
 PolygonSoup final_soup(const Decoded& stream) {
@@ -118,21 +132,23 @@ bool is_stream(const std::uint8_t* data, std::size_t size) { return size >= magi
 
 std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
   if (hierarchy.node_count() == 0) throw Error(ErrorCode::InvalidInput, "an empty hierarchy has no stream");
+  progress.stage("fitting");
+  const QuadMesh given = fitted_mesh(hierarchy, options, progress.part(0, 0.6));
   progress.stage("coding");
   BitWriter writer;
   StreamCoder coder(writer, &hierarchy);
   const std::shared_ptr<StreamGeometry> geometry = stream_geometry(coder.code_structure());
   const QuadMesh mesh = geometry->mesh.final_mesh();
-  const std::vector<Vec3> points = points_at(hierarchy, mesh, [&](VertexId vertex) { return coder.given_vertex(vertex); });
-  progress(0.1);
+  const std::vector<Vec3> points = points_at(given, mesh, [&](VertexId vertex) { return coder.given_vertex(vertex); });
+  progress(0.62);
   const StreamContent all = analyse(*geometry, points);
-  progress(0.4);
+  progress(0.7);
   StreamContent known;
   coder.code_head(static_cast<int>(geometry->steps.size()), known, &all);
   coder.code_base(*geometry, known, &all);
   const std::size_t base = preamble + writer.size() + 4;
   coder.code_planes(*geometry, known, &all);
-  progress(0.5);
+  progress(0.75);
   std::vector<std::uint8_t> bytes(magic.begin(), magic.end());
   bytes.push_back(version);
   const std::vector<std::uint8_t> body = writer.finish();
@@ -143,7 +159,10 @@ std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const Strea
                   "the base alone takes about " + std::to_string(base) + " bytes, more than " + std::to_string(options.most_bytes));
     bytes.resize(options.most_bytes);
   }
-  if (options.error > 0) bytes.resize(shortest(bytes, options.error, geometry, to_soup(hierarchy.final_mesh()), progress.part(0.5, 1)));
+  if (options.error > 0) {
+    const PolygonSoup reference = options.surface ? *options.surface : to_soup(hierarchy.final_mesh());
+    bytes.resize(shortest(bytes, options.error, geometry, reference, progress.part(0.75, 1)));
+  }
   progress(1);
   return bytes;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "codec/coefficient_scale.h"
 #include "codec/surface_frames.h"
 
 namespace hybrid_mesh {
@@ -16,23 +17,8 @@ namespace {
 
 [[noreturn]] void corrupt(const std::string& what) { throw Error(ErrorCode::CorruptStream, std::string("not a valid hierarchy stream: ") + what); }
 
-// What a coefficient of a side, a centre or another vertex, `levels` below the finest, does to the finest: the root of the sum of squares, as on a
-// regular grid.
-double weight_of(int kind, int levels) {
-  constexpr double weights[3][5] = {
-      {1.0938, 0.9369, 1.5176, 2.8878, 5.7053}, {1.0938, 0.4443, 0.5962, 1.0853, 2.1210}, {1, 1.0938, 1.9756, 3.8630, 7.6837}};
-  return std::ldexp(weights[kind][std::min(levels, 4)], std::max(levels - 4, 0));
-}
-
-// Components along the surface matter less to its shape.
-constexpr double tangential = 0.25;
-
-double scale_of(int kind, std::size_t component, int levels) { return weight_of(kind, levels) * (component > 0 ? tangential : 1); }
-
 // Of the bits of the base's coordinates, as many as the details' steps make worth while.
 int bits_at(int plane, int depth) { return std::min(plane + depth - 3, base_bits); }
-
-const Frame coordinate_axes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
 constexpr int least_rough_bits = 5, most_rough_bits = 12;
 
@@ -47,18 +33,13 @@ std::vector<Vec3> refined_points(const WaveletStep& step, const CoefficientLayou
     const Frame& frame = unturned ? coordinate_axes : frames[vertex];
     Vec3 detail = Vec3::Zero();
     for (std::size_t c = 0; c < components; ++c) {
-      const double value = known.value(components * i + c) / scale_of(kind, c, levels);
+      const double value = known.value(components * i + c) / coefficient_scale(kind, c, levels);
       const Vec3& axis = frame[c];
       detail = {detail.x() + value * axis.x(), detail.y() + value * axis.y(), detail.z() + value * axis.z()};
     }
     (i < step.details().size() ? analysis.details : analysis.remainder).push_back(detail);
   }
   return step.synthesise(analysis);
-}
-
-std::vector<Frame> predicted_frames(const WaveletStep& step, const std::vector<Vec3>& coarse) {
-  const std::vector<Vec3> smooth = step.synthesise({coarse, std::vector<Vec3>(step.details().size(), Vec3::Zero()), {}});
-  return surface_frames(step.fine(), smooth);
 }
 
 Coefficients quantised(const CoefficientLayout& layout, const LevelAnalysis& analysis, const std::vector<Frame>& frames, int levels, int plane) {
@@ -70,7 +51,7 @@ Coefficients quantised(const CoefficientLayout& layout, const LevelAnalysis& ana
     const Frame& frame = unturned ? coordinate_axes : frames[vertex];
     const Vec3& detail = i < analysis.details.size() ? analysis.details[i] : analysis.remainder[i - analysis.details.size()];
     for (std::size_t c = 0; c < components; ++c) {
-      const double steps = std::ldexp(dot(detail, frame[c]) * scale_of(kind, c, levels), plane);
+      const double steps = std::ldexp(dot(detail, frame[c]) * coefficient_scale(kind, c, levels), plane);
       if (!(std::abs(steps) < 1u << 30)) throw Error(ErrorCode::Unsupported, "a stream cannot hold details this large");
       result.size.push_back(static_cast<std::uint32_t>(std::abs(steps)));
       result.negative.push_back(steps < 0);

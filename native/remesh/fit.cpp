@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "remesh/block_matrix.h"
 #include "remesh/quality.h"
 
 namespace hybrid_mesh {
@@ -143,31 +144,6 @@ Closest walk(const TriangleCover& t, const std::vector<Vec3>& p, const Vec3& x, 
   }
   return best;
 }
-
-// Symmetric positive definite blocks of 3 x 3 between vertices that share a face, in compressed rows.
-struct BlockMatrix {
-  std::vector<int> row, column;
-  std::vector<Eigen::Matrix3d> block;
-
-  explicit BlockMatrix(const QuadMesh& mesh) {
-    const int n = static_cast<int>(mesh.points.size());
-    std::vector<std::vector<int>> neighbours(n);
-    for (std::size_t f = 0; f < mesh.face_count(); ++f)
-      for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i)
-        for (std::int64_t j = mesh.offsets[f]; j < mesh.offsets[f + 1]; ++j) neighbours[mesh.indices[i]].push_back(mesh.indices[j]);
-    row.push_back(0);
-    for (std::vector<int>& list : neighbours) {
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-      column.insert(column.end(), list.begin(), list.end());
-      row.push_back(static_cast<int>(column.size()));
-    }
-    block.resize(column.size());
-  }
-  int find(int i, int j) const {
-    return static_cast<int>(std::lower_bound(column.begin() + row[i], column.begin() + row[i + 1], j) - column.begin());
-  }
-};
 
 // Edge neighbours of every vertex, for the uniform Laplacian (the mean of the neighbours less the vertex).
 struct Neighbours {
@@ -336,14 +312,22 @@ std::vector<char> boundary_vertices(const QuadMesh& mesh) {
   return boundary;
 }
 
-std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples) {
+std::vector<FitAnchor> closest_anchors(const QuadMesh& mesh, std::vector<FitSample>& samples) {
   const TriangleCover cover(mesh);
-  std::vector<double> result(samples.size());
+  std::vector<FitAnchor> anchors(samples.size());
   for_all(static_cast<int>(samples.size()), [&](int i) {
     int t = cover.first[samples[i].face];
-    result[i] = walk(cover, mesh.points, samples[i].position, t).squared;
+    const Closest closest = walk(cover, mesh.points, samples[i].position, t);
     samples[i].face = cover.face_of[t];
+    anchors[i] = {cover.faces[t], closest.weights, closest.squared};
   });
+  return anchors;
+}
+
+std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples) {
+  std::vector<double> result;
+  result.reserve(samples.size());
+  for (const FitAnchor& anchor : closest_anchors(mesh, samples)) result.push_back(anchor.squared_distance);
   return result;
 }
 
@@ -360,22 +344,11 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
   for (const FitSample& s : samples) weight_sum += s.weight;
   for (const double x : share) share_sum += x;
   for (int v = 0; v < n; ++v) part[v] = weight_sum * (share.empty() ? 1.0 / n : share[v] / share_sum);
-  struct Anchor {
-    std::array<int, 3> v;
-    std::array<double, 3> w;
-  };
-  std::vector<Anchor> anchors(samples.size());
   for (int round = 0; round < options.rounds; ++round) {
     progress(static_cast<double>(round) / options.rounds);
     const std::vector<double> smoothness = smoothness_at(mesh, options);
     for (int v = 0; v < n; ++v) regularizer[v] = smoothness[v] * part[v];
-    const TriangleCover cover(mesh);
-    for_all(static_cast<int>(samples.size()), [&](int i) {
-      int t = cover.first[samples[i].face];
-      const Closest c = walk(cover, mesh.points, samples[i].position, t);
-      samples[i].face = cover.face_of[t];
-      anchors[i] = {cover.faces[t], c.weights};
-    });
+    const std::vector<FitAnchor> anchors = closest_anchors(mesh, samples);
     progress.check();
     for (Eigen::Matrix3d& b : matrix.block) b.setZero();
     std::vector<Vec3> right(n, Vec3::Zero());
@@ -388,12 +361,13 @@ void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<
       const Eigen::Matrix3d metric = weight * (a * Eigen::Matrix3d::Identity() + (1 - a) * normal * normal.transpose());
       const Vec3 target = metric * samples[i].position;
       for (int p = 0; p < 3; ++p) {
-        if (anchors[i].w[p] == 0) continue;
-        right[anchors[i].v[p]] += anchors[i].w[p] * target;
-        pull[anchors[i].v[p]] += anchors[i].w[p] * weight;
-        hold[anchors[i].v[p]] += anchors[i].w[p] * anchors[i].w[p] * weight;
+        if (anchors[i].weights[p] == 0) continue;
+        right[anchors[i].vertices[p]] += anchors[i].weights[p] * target;
+        pull[anchors[i].vertices[p]] += anchors[i].weights[p] * weight;
+        hold[anchors[i].vertices[p]] += anchors[i].weights[p] * anchors[i].weights[p] * weight;
         for (int q = 0; q < 3; ++q)
-          if (anchors[i].w[q] != 0) matrix.block[matrix.find(anchors[i].v[p], anchors[i].v[q])] += anchors[i].w[p] * anchors[i].w[q] * metric;
+          if (anchors[i].weights[q] != 0)
+            matrix.block[matrix.find(anchors[i].vertices[p], anchors[i].vertices[q])] += anchors[i].weights[p] * anchors[i].weights[q] * metric;
       }
     }
     // A vertex all of whose samples are at the far ends of its faces would be thrown by the lever that they are: this much holds it where it is.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/context.h"
@@ -31,6 +32,16 @@ struct FitOptions {
 // goes back part of its way.
 void fit_mesh(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<double>& share, std::vector<FitSample>& samples,
               const FitOptions& options, const Progress& progress);
+
+// The point of a mesh that is closest to a sample: on a triangle between three of its vertices.
+struct FitAnchor {
+  std::array<int, 3> vertices;
+  std::array<double, 3> weights;  // barycentric
+  double squared_distance = 0;
+};
+
+// Of every sample, by walking from its face; updates the faces.
+std::vector<FitAnchor> closest_anchors(const QuadMesh& mesh, std::vector<FitSample>& samples);
 
 // Squared distance of every sample to the mesh, by walking from its face; updates the faces.
 std::vector<double> squared_distances(const QuadMesh& mesh, std::vector<FitSample>& samples);

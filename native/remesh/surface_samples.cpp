@@ -129,4 +129,21 @@ std::vector<FitSample> SurfaceSamples::on(const HybridMesh& hierarchy, const Qua
   return out;
 }
 
+PolygonSoup mapped_surface(const HybridMesh& hierarchy) {
+  PolygonSoup soup;
+  for (const int owner : map_owners(hierarchy, HybridMesh::max_level)) {
+    const PatchMap& map = *hierarchy.map(owner);
+    for (const auto& t : map.triangles) {
+      const Vec2 middle = (map.uv[t[0]] + map.uv[t[1]] + map.uv[t[2]]) / 3;
+      if (fineness(hierarchy, owner, middle.x(), middle.y(), HybridMesh::max_level) == 0) continue;
+      for (const int v : t) {
+        soup.indices.push_back(static_cast<std::int32_t>(soup.points.size()));
+        soup.points.push_back(map.positions[v]);
+      }
+      soup.offsets.push_back(static_cast<std::int64_t>(soup.indices.size()));
+    }
+  }
+  return soup;
+}
+
 }  // namespace hybrid_mesh

@@ -31,4 +31,7 @@ class SurfaceSamples {
   std::vector<Sample> samples_;
 };
 
+// The triangles of all maps that count, each with points of its own: the surface that the leaves stand for.
+PolygonSoup mapped_surface(const HybridMesh& hierarchy);
+
 }  // namespace hybrid_mesh

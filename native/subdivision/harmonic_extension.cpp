@@ -3,57 +3,104 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
+#include <map>
 
 #include "base/error.h"
 
 namespace hybrid_mesh {
 
-int extend_harmonically(const std::vector<std::array<int, 2>>& edges, const std::vector<Known>& known, std::vector<Vec3>& values) {
-  // Values that a known one reaches.
-  std::vector<int> row(values.size(), -1), queue;
-  std::vector<std::vector<int>> neighbours(values.size());  // of unknown vertices
-  for (const auto& [a, b] : edges) {
-    if (a == b || known[a] == Known::Absent || known[b] == Known::Absent) continue;
-    if (known[a] == Known::No) neighbours[a].push_back(b);
-    if (known[b] == Known::No) neighbours[b].push_back(a);
-  }
-  const auto reach = [&](int v) {
-    if (row[v] >= 0) return;
-    row[v] = static_cast<int>(queue.size());
-    queue.push_back(v);
-  };
-  int unknown = 0;
-  for (int v = 0; v < static_cast<int>(known.size()); ++v) {
-    if (known[v] != Known::No) continue;
-    ++unknown;
-    for (const int w : neighbours[v])
-      if (known[w] == Known::Yes) reach(v);
-  }
-  for (std::size_t i = 0; i < queue.size(); ++i)
-    for (const int w : neighbours[queue[i]])
-      if (known[w] == Known::No) reach(w);
-  if (queue.empty()) return unknown;
+namespace {
 
-  const auto size = static_cast<Eigen::Index>(queue.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(size, 3);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const std::vector<int>& around = neighbours[queue[i]];
-    entries.emplace_back(i, i, static_cast<double>(around.size()));
-    for (const int w : around) {
-      if (known[w] == Known::Yes)
-        right.row(i) += values[w].transpose();
-      else
-        entries.emplace_back(i, row[w], -1.0);
+// The equations of the unknown values that a known one reaches.
+struct HarmonicSystem {
+  std::vector<int> reached;                  // in the order of the equations
+  std::vector<int> row;                      // of each value: its equation, -1
+  std::vector<std::vector<int>> neighbours;  // of unknown values
+  int unknown = 0;                           // all of them
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+
+  HarmonicSystem(const std::vector<std::array<int, 2>>& edges, const std::vector<Known>& known) : row(known.size(), -1), neighbours(known.size()) {
+    for (const auto& [a, b] : edges) {
+      if (a == b || known[a] == Known::Absent || known[b] == Known::Absent) continue;
+      if (known[a] == Known::No) neighbours[a].push_back(b);
+      if (known[b] == Known::No) neighbours[b].push_back(a);
     }
+    find_reached(known);
+    if (!reached.empty()) factorize(known);
   }
-  Eigen::SparseMatrix<double> laplacian(size, size);
-  laplacian.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
-  if (solver.info() != Eigen::Success) throw Error(ErrorCode::Internal, "the harmonic extension has no solution");
-  const Eigen::MatrixX3d solution = solver.solve(right);
-  for (Eigen::Index i = 0; i < size; ++i) values[queue[i]] = solution.row(i).transpose();
-  return unknown - static_cast<int>(size);
+
+ private:
+  void reach(int v) {
+    if (row[v] >= 0) return;
+    row[v] = static_cast<int>(reached.size());
+    reached.push_back(v);
+  }
+  void find_reached(const std::vector<Known>& known) {
+    for (int v = 0; v < static_cast<int>(known.size()); ++v) {
+      if (known[v] != Known::No) continue;
+      ++unknown;
+      for (const int w : neighbours[v])
+        if (known[w] == Known::Yes) reach(v);
+    }
+    for (std::size_t i = 0; i < reached.size(); ++i)
+      for (const int w : neighbours[reached[i]])
+        if (known[w] == Known::No) reach(w);
+  }
+  void factorize(const std::vector<Known>& known) {
+    const auto size = static_cast<Eigen::Index>(reached.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const std::vector<int>& around = neighbours[reached[i]];
+      entries.emplace_back(i, i, static_cast<double>(around.size()));
+      for (const int w : around)
+        if (known[w] != Known::Yes) entries.emplace_back(i, row[w], -1.0);
+    }
+    Eigen::SparseMatrix<double> laplacian(size, size);
+    laplacian.setFromTriplets(entries.begin(), entries.end());
+    solver.compute(laplacian);
+    if (solver.info() != Eigen::Success) throw Error(ErrorCode::Internal, "the harmonic extension has no solution");
+  }
+};
+
+}  // namespace
+
+int extend_harmonically(const std::vector<std::array<int, 2>>& edges, const std::vector<Known>& known, std::vector<Vec3>& values) {
+  const HarmonicSystem system(edges, known);
+  const auto size = static_cast<Eigen::Index>(system.reached.size());
+  if (size == 0) return system.unknown;
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(size, 3);
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (const int w : system.neighbours[system.reached[i]])
+      if (known[w] == Known::Yes) right.row(i) += values[w].transpose();
+  const Eigen::MatrixX3d solution = system.solver.solve(right);
+  for (Eigen::Index i = 0; i < size; ++i) values[system.reached[i]] = solution.row(i).transpose();
+  return system.unknown - static_cast<int>(size);
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> harmonic_extension(const std::vector<std::array<int, 2>>& edges, const std::vector<Known>& known) {
+  const HarmonicSystem system(edges, known);
+  const auto count = static_cast<Eigen::Index>(known.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index v = 0; v < count; ++v)
+    if (known[v] == Known::Yes) entries.emplace_back(v, v, 1.0);
+  const auto size = static_cast<Eigen::Index>(system.reached.size());
+  std::map<int, Eigen::Index> column;  // of known values that unknown ones depend on
+  for (const int v : system.reached)
+    for (const int w : system.neighbours[v])
+      if (known[w] == Known::Yes) column.emplace(w, static_cast<Eigen::Index>(column.size()));
+  if (size > 0) {
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(column.size()));
+    for (Eigen::Index i = 0; i < size; ++i)
+      for (const int w : system.neighbours[system.reached[i]])
+        if (known[w] == Known::Yes) right(i, column[w]) += 1;
+    const Eigen::MatrixXd solution = system.solver.solve(right);
+    for (const auto& [w, k] : column)
+      for (Eigen::Index i = 0; i < size; ++i)
+        if (solution(i, k) != 0) entries.emplace_back(system.reached[i], w, solution(i, k));
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
 }
 
 }  // namespace hybrid_mesh

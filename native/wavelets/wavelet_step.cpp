@@ -192,6 +192,41 @@ std::vector<Vec3> WaveletStep::synthesise(const LevelAnalysis& analysis) const {
   return fine;
 }
 
+SparseRows WaveletStep::synthesis() const {
+  const Parts& parts = *parts_;
+  const auto rows = static_cast<Eigen::Index>(parts.fine.vertex_count()), first = static_cast<Eigen::Index>(parts.coarse.vertex_count());
+  const Eigen::Index columns = first + static_cast<Eigen::Index>(parts.details.size());
+  const auto matrix_of = [](Eigen::Index height, Eigen::Index width, const std::vector<Eigen::Triplet<double>>& entries) {
+    SparseRows matrix(height, width);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+  };
+  std::vector<Eigen::Triplet<double>> refined, inserted, closed, closing;
+  for (const auto& [c, v] : parts.prediction.stays) refined.emplace_back(v, c, 1.0);
+  for (std::size_t r = 0; r < parts.prediction.vertex_at.size(); ++r) {
+    const int v = parts.prediction.vertex_at[r];
+    if (v < 0) continue;
+    for (SparseRows::InnerIterator entry(parts.prediction.step.weights, static_cast<Eigen::Index>(r)); entry; ++entry)
+      refined.emplace_back(v, entry.col(), entry.value());
+    for (SparseRows::InnerIterator entry(parts.filters, static_cast<Eigen::Index>(r)); entry; ++entry)
+      if (const int d = parts.detail_of[entry.col()]; d >= 0) refined.emplace_back(v, first + d, entry.value());
+  }
+  for (std::size_t d = 0; d < parts.details.size(); ++d) {
+    const auto& [v, kind] = parts.details[d];
+    if (kind == DetailKind::Inserted) inserted.emplace_back(v, first + static_cast<Eigen::Index>(d), 1.0);
+    if (kind == DetailKind::Closing) closing.emplace_back(v, first + static_cast<Eigen::Index>(d), 1.0);
+  }
+  std::vector<char> is_closing(parts.fine.vertex_count(), 0);
+  for (const LevelPrediction::Mean& mean : parts.prediction.closing) {
+    is_closing[mean.vertex] = 1;
+    for (const int v : mean.of) closed.emplace_back(mean.vertex, v, 1.0 / static_cast<double>(mean.of.size()));
+  }
+  for (Eigen::Index v = 0; v < rows; ++v)
+    if (!is_closing[v]) closed.emplace_back(v, v, 1.0);
+  const SparseRows open = harmonic_extension(parts.edges, parts.known) * matrix_of(rows, columns, refined);
+  return SparseRows(matrix_of(rows, rows, closed) * SparseRows(open + matrix_of(rows, columns, inserted))) + matrix_of(rows, columns, closing);
+}
+
 LevelAnalysis WaveletStep::analyse(const std::vector<Vec3>& fine) const {
   const Parts& parts = *parts_;
   check_points(fine, parts.fine.vertex_count(), "positions");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Sparse>
 #include <memory>
 #include <vector>
 
@@ -57,6 +58,8 @@ class WaveletStep {
   std::vector<Vec3> synthesise(const LevelAnalysis& analysis) const;
   // Its inverse, up to rounding: solves a sparse system. Throws Error{InvalidInput} in the same cases.
   LevelAnalysis analyse(const std::vector<Vec3>& fine) const;
+  // Synthesis without a remainder as a matrix, #vertices of N^j x (#vertices of N^{j-1} + #details).
+  Eigen::SparseMatrix<double, Eigen::RowMajor> synthesis() const;
 
  private:
   struct Parts;

@@ -163,7 +163,7 @@ class Hierarchy:
         with open(path, "w", encoding="utf-8") as file:
             json.dump([self.low.tolist(), self.high.tolist(), self.count, metadata], file)
 
-    def save_stream(self, path, *, most_bytes=0, error=0.0):
+    def save_stream(self, path, *, most_bytes=0, error=0.0, exact=False, surface=None):
         """As many bytes as there are levels to be had for."""
         if 0 < most_bytes < 10:
             raise InvalidInput("the base alone takes about 10 bytes")

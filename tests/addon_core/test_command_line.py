@@ -65,6 +65,7 @@ def test_encode_and_decode(command_line):
     assert command_line.run("decode", "out/box.hmesh", "--output", "whole.ply").returncode == 0
     assert command_line.run("encode", "out/box.hmesh", "rough.hmesh", "--error", 0.1).returncode == 0
     assert (command_line.folder / "rough.hmesh").read_text() != (command_line.folder / "box.stream.hmesh").read_text()
+    assert command_line.run("encode", "out/box.hmesh", "near.hmesh", "--source", "box.obj").returncode == 0
     assert command_line.run("info", "rough.hmesh").returncode == 0
 
 
@@ -207,6 +208,7 @@ def test_inputs_of_one_name_get_names_of_their_own(command_line):
         (("encode", "a", "b", "--bytes", "0"), "--bytes"),
         (("encode", "a", "b", "--error", "1"), "--error"),
         (("encode", "a", "b", "--error", "0.1", "--bytes", "100"), "--bytes"),
+        (("encode", "a", "b", "--exact", "--source", "c.ply"), "--source"),
         (("decode", "a"), "--output"),
         (("decode", "a", "--output", "b.glb"), "'b.glb'"),
         (("decode", "a", "--output", "b.ply", "--level", "-1"), "--level"),

@@ -11,7 +11,7 @@ def distance(a, b):
 
 
 def test_all_of_it_is_the_hierarchy(hierarchy, tmp_path):
-    size = hierarchy.save_stream(tmp_path / "a.hmesh")
+    size = hierarchy.save_stream(tmp_path / "a.hmesh", exact=True)
     assert (tmp_path / "a.hmesh").stat().st_size == size
     loaded = _native.load_hierarchy(tmp_path / "a.hmesh")
     assert loaded.check() == [] and loaded.level_names == hierarchy.level_names
@@ -25,22 +25,33 @@ def test_all_of_it_is_the_hierarchy(hierarchy, tmp_path):
 
 
 def test_more_of_it_is_nearer(hierarchy, tmp_path):
-    size = hierarchy.save_stream(tmp_path / "a.hmesh")
+    size = hierarchy.save_stream(tmp_path / "a.hmesh", exact=True)
     final = hierarchy.final_mesh()
     errors = [distance(final, _native.load_hierarchy(tmp_path / "a.hmesh", most_bytes=size // part).final_mesh()) for part in (16, 8, 4, 2, 1)]
     assert errors == sorted(errors, reverse=True) and errors[0] > 10 * errors[-1]
 
 
+def test_a_fitted_stream_is_as_near_with_fewer_bytes(tmp_path):
+    scan = torus()
+    hierarchy = _native.remesh(*scan, {"vertices": 2000}).hierarchy
+    sizes = {}
+    for exact in (True, False):
+        sizes[exact] = hierarchy.save_stream(tmp_path / "a.hmesh", error=5e-4, exact=exact, surface=scan)
+        final = _native.load_hierarchy(tmp_path / "a.hmesh").final_mesh()
+        assert _native.compare(*scan, final["points"], final["offsets"], final["indices"])["l2"] < 5.5e-4
+    assert sizes[False] < 0.9 * sizes[True]
+
+
 def test_bounds(hierarchy, tmp_path):
-    size = hierarchy.save_stream(tmp_path / "a.hmesh")
-    assert hierarchy.save_stream(tmp_path / "b.hmesh", most_bytes=size // 2) == size // 2
+    size = hierarchy.save_stream(tmp_path / "a.hmesh", exact=True)
+    assert hierarchy.save_stream(tmp_path / "b.hmesh", exact=True, most_bytes=size // 2) == size // 2
     assert (tmp_path / "b.hmesh").read_bytes() == (tmp_path / "a.hmesh").read_bytes()[: size // 2]
-    short = hierarchy.save_stream(tmp_path / "c.hmesh", error=1e-3)
+    short = hierarchy.save_stream(tmp_path / "c.hmesh", exact=True, error=1e-3)
     assert short < size and distance(hierarchy.final_mesh(), _native.load_hierarchy(tmp_path / "c.hmesh").final_mesh()) < 1.05e-3
     with pytest.raises(_native.InvalidInput, match="base alone"):
-        hierarchy.save_stream(tmp_path / "d.hmesh", most_bytes=10)
+        hierarchy.save_stream(tmp_path / "d.hmesh", exact=True, most_bytes=10)
     with pytest.raises(_native.InvalidInput, match="error"):
-        hierarchy.save_stream(tmp_path / "d.hmesh", error=-1)
+        hierarchy.save_stream(tmp_path / "d.hmesh", exact=True, error=-1)
     assert not (tmp_path / "d.hmesh").exists()
 
 

@@ -40,6 +40,28 @@ TEST(WaveletStep, ReconstructionIsPerfect) {
     }
 }
 
+TEST(WaveletStep, SynthesisIsAMatrix) {
+  for (const Hierarchy& tried : hierarchies()) {
+    SCOPED_TRACE(tried.name);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int level = 1; level <= tried.mesh.depth(); ++level) {
+      const WaveletStep step(tried.mesh, level);
+      LevelAnalysis analysis{randomly_placed(step.coarse(), random).points, {}, {}};
+      for (std::size_t d = 0; d < step.details().size(); ++d) analysis.details.emplace_back(uniform(random), uniform(random), uniform(random));
+      Eigen::MatrixX3d both(static_cast<Eigen::Index>(analysis.coarse.size() + analysis.details.size()), 3);
+      for (Eigen::Index i = 0; i < both.rows(); ++i) {
+        const auto detail = i - static_cast<Eigen::Index>(analysis.coarse.size());
+        both.row(i) = (detail < 0 ? analysis.coarse[i] : analysis.details[detail]).transpose();
+      }
+      const Eigen::MatrixX3d product = step.synthesis() * both;
+      std::vector<Vec3> points;
+      for (Eigen::Index i = 0; i < product.rows(); ++i) points.emplace_back(product.row(i).transpose());
+      EXPECT_LT(farthest(points, step.synthesise(analysis)), kRounding) << level;
+    }
+  }
+}
+
 TEST(WaveletStep, AllLevelsTogetherGiveTheFinalMeshBack) {
   for (const Hierarchy& tried : hierarchies()) {
     SCOPED_TRACE(tried.name);

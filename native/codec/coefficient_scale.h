@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to codec/.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "codec/surface_frames.h"
+#include "wavelets/wavelet_step.h"
+
+namespace hybrid_mesh {
+
+// What one component of a detail counts: by how much it moves the finest level's vertices, in the root of the sum of squares, as on a regular grid.
+// Of a side (kind 0), a centre (1) or another vertex (2), `levels` below the finest.
+double coefficient_weight(int kind, int levels);
+
+// The same, with components along the surface (1, 2) made smaller: they matter less to its shape.
+double coefficient_scale(int kind, std::size_t component, int levels);
+
+int coefficient_kind(DetailKind kind);
+
+inline const Frame coordinate_axes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+
+// Of a step's fine vertices, where subdivision alone puts them.
+std::vector<Frame> predicted_frames(const WaveletStep& step, const std::vector<Vec3>& coarse);
+
+}  // namespace hybrid_mesh
