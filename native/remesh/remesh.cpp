@@ -50,8 +50,8 @@ Candidate fitted(const RemeshTask& task, Candidate c, bool may_change_base) {
 // Above so many widths of a quad that the surface sticks out of the mesh, the base has missed a limb.
 constexpr double kMissed = 1.25;
 // Where another base may be no minimal one, or there are handles, around which a minimal base follows little more (three buddhas: L2 3 % better in
-// one, none in two), only what sticks out by this is worth its time. (Scans with limbs that are lost: 2.4 and 8.8; all others with handles: below 1.9;
-// a buddha of 1.6 million rough triangles, of which the second base takes as long as the first: 2.01.)
+// one, none in two), only what sticks out by this is worth its time. (Scans with limbs that are lost: 2.4 and 8.8; all others with handles:
+// below 1.9; a buddha of 1.6 million rough triangles, of which the second base takes as long as the first: 2.01.)
 constexpr double kMissedByFar = 2.25;
 
 bool may_be_minimal(const RemeshTask& task) { return task.options.base == BaseSize::Auto && !task.options.semi_regular; }
@@ -159,13 +159,15 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   return without;
 }
 
-// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows.
+// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows. Not of a large surface, of which
+// a mesh takes long, and where it is poor in a few places of many.
 CandidateSearch best_by_need(const RemeshTask& task) {
   constexpr int tries = 2;
+  constexpr std::size_t most_faces = 500000;
   CandidateSearch best = best_for(task, {}, false);
   const RemeshOptions& options = task.options;
   const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.levels < 0 && options.base != BaseSize::Given &&
-                          !task.source.density.sizes && !task.source.mirror && !task.base.series;
+                          !task.source.density.sizes && !task.source.mirror && !task.base.series && task.source.repaired.faces.size() <= most_faces;
   if (!best.candidate || !may_change) return best;
   Badness least = badness(task, *best.candidate);
   if (!least.quads_are_too_large) return best;
