@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from hybrid_mesh import _native
+from shapes import torus
 
 
 def distance(a, b):

@@ -105,7 +105,8 @@ def test_a_closed_fold(tmp_path):
     outcome = Outcome(tmp_path, with_fold(), "--vertices", 500, "--base-quads", "min", "--levels", 3)
     check_poor(outcome)
     where = np.array(outcome.reasons["hausdorff"]["where"])
-    assert where[0] < 0.5 and abs(where[2]) < 0.1 and "vertices" not in outcome.reasons
+    # In the cut, or where the mesh goes down beside it: nowhere else is anything this deep in the ball.
+    assert where[0] > 0 and np.linalg.norm(where) < 0.9 and "vertices" not in outcome.reasons
 
 
 def test_inverted_quads(tmp_path):
