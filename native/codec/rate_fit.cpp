@@ -23,6 +23,9 @@ constexpr int samples_of_a_triangle = 3;  // of the mesh
 constexpr std::int64_t least_samples = 5000, most_samples = 4000000;
 // Cosine of the angle between a mesh's normal and that of the surface's closest point: below, the mesh is folded there.
 constexpr double unfolded = 0.2;
+// A place has gone astray where its mean square distance is more than that of the given mesh there so many times and the mean of all so many times.
+constexpr double farther = 2, much_farther = 10;
+constexpr int soft_rings = 6;  // around it, between what starts anew and what does not: a seam costs bits
 
 using Triangle = std::array<int, 3>;
 
@@ -121,12 +124,17 @@ class RateFit {
         held_(held_vertices(mesh_)) {
     for (Vec3& point : mesh_.points) point = placement_.to_unit(point);
     given_ = mesh_.points;
+    errors_.resize(given_.size());
     const auto count = std::clamp(options.samples * static_cast<std::int64_t>(given_.size()), least_samples, most_samples);
     samples_ = even_samples(surface_, count);
     find_faces(mesh_, samples_);
+    homes_ = closest_anchors(mesh_, samples_);
+    for (const FitSample& sample : samples_) home_faces_.push_back(sample.face);
   }
 
   QuadMesh run() {
+    set_equations();
+    errors_given_ = errors_;
     coefficients_ = chain_.analyse(mesh_.points);
     const int depth = chain_.depth(), all = depth * options_.coarse_rounds + options_.rounds;
     // Finer levels start with nothing: what coarser ones cannot do is left to them.
@@ -139,9 +147,13 @@ class RateFit {
         coefficients_ = chain_.reframed(coefficients_);
         mesh_.points = chain_.synthesise(coefficients_);
         set_equations();
-        solve(chain_.part(level + 1), level == depth && round >= options_.rounds / 2);
+        if (level == depth && round >= options_.free_rounds && start_anew()) set_equations();
+        const double cost = level == depth && round + 1 == options_.rounds ? options_.last : 1;
+        solve(chain_.part(level + 1), penalties(level == depth && round >= options_.rounds / 2, cost));
       }
     mesh_.points = chain_.synthesise(coefficients_);
+    set_equations();
+    start_anew();
     for (Vec3& point : mesh_.points) point = placement_.from_unit(point);
     return std::move(mesh_);
   }
@@ -155,12 +167,49 @@ class RateFit {
     return result;
   }
 
+  // Means over vertices and their neighbours.
+  std::vector<double> spread(const std::vector<double>& values) const {
+    const BlockMatrix& matrix = equations_.matrix;
+    std::vector<double> result(values.size());
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      for (int k = matrix.row[v]; k < matrix.row[v + 1]; ++k) result[v] += values[matrix.column[k]];
+      result[v] /= matrix.row[v + 1] - matrix.row[v];
+    }
+    return result;
+  }
+
+  // Where coarse levels lie on the wrong side of something thin, or what is small and bent got folded, closest points lead no way back: such places
+  // start from the given points, with samples where they were on these. Whether there are any.
+  bool start_anew() {
+    const std::vector<double> now = spread(spread(errors_)), given = spread(spread(errors_given_));
+    double mean = 0;
+    for (const double error : given) mean += error / static_cast<double>(given.size());
+    std::vector<double> share(now.size());
+    bool any = false;
+    for (std::size_t v = 0; v < now.size(); ++v)
+      if (now[v] > farther * given[v] + much_farther * mean) {
+        share[v] = 1;
+        any = true;
+      }
+    if (!any) return false;
+    share = spread(share);
+    for (double& s : share) s = s > 0 ? 1 : 0;
+    for (int ring = 0; ring < soft_rings; ++ring) share = spread(share);
+    for (std::size_t v = 0; v < share.size(); ++v) mesh_.points[v] += share[v] * (given_[v] - mesh_.points[v]);
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      if (share[homes_[i].vertices[0]] > 0.5) samples_[i].face = home_faces_[i];
+    coefficients_ = chain_.analyse(mesh_.points);
+    return true;
+  }
+
   void set_equations() {
     equations_.clear();
+    std::fill(errors_.begin(), errors_.end(), 0);
     const std::vector<FitAnchor> anchors = closest_anchors(mesh_, samples_);
     const double weight = 0.5 / static_cast<double>(samples_.size());
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const FitAnchor& anchor = anchors[i];
+      for (int p = 0; p < 3; ++p) errors_[homes_[i].vertices[p]] += weight * homes_[i].weights[p] * anchor.squared_distance;
       Vec3 at = Vec3::Zero();
       for (int p = 0; p < 3; ++p) at += anchor.weights[p] * mesh_.points[anchor.vertices[p]];
       equations_.add(anchor.vertices, anchor.weights, weight * metric(samples_[i].normal, samples_[i].position - at), samples_[i].position - at);
@@ -202,30 +251,39 @@ class RateFit {
     });
     double total = 0;
     for (const Pull& pull : pulls) total += pull.area;
-    for (const Pull& pull : pulls) equations_.add(pull.vertices, pull.weights, 0.5 * pull.area / total * metric(pull.normal, pull.way), pull.way);
+    for (const Pull& pull : pulls) {
+      const double weight = 0.5 * pull.area / total;
+      for (int p = 0; p < 3; ++p) errors_[pull.vertices[p]] += weight * pull.weights[p] * pull.way.squaredNorm();
+      equations_.add(pull.vertices, pull.weights, weight * metric(pull.normal, pull.way), pull.way);
+    }
   }
 
   // Of each coefficient, over the vertices.
-  Columns penalties(bool sparse) const {
+  Columns penalties(bool sparse, double times) const {
     const double mean = 1.0 / static_cast<double>(given_.size());
     Columns cost = Columns::Zero(coefficients_.rows(), 3);
     int level = 1;
     for (Eigen::Index row = chain_.part(1); row < cost.rows(); ++row)
       for (int c = 0; c < 3; ++c) {
         while (row >= chain_.part(level + 1)) ++level;
-        cost(row, c) = c > 0 && chain_.slides(row) ? options_.along_details : options_.across_details;
+        const double squared = coefficients_(row, c) * coefficients_(row, c);
+        cost(row, c) = options_.across_details;
+        // Bits grow as the logarithm. All of a large one's square would pull vertices around what is small and bent, where they fold.
+        if (c > 0 && chain_.slides(row)) {
+          const double large = options_.large_along * options_.large_along;
+          cost(row, c) = options_.along_details * large / (squared + large);
+        }
         cost(row, c) *= std::pow(options_.coarser, chain_.depth() - level);
         if (!sparse || options_.sparse == 0) continue;
         // The square that touches y^2 e^2 / (y^2 + e^2) where y is now (iteratively reweighted least squares).
-        const double e = options_.sparse * options_.sparse, y = coefficients_(row, c) * coefficients_(row, c);
-        cost(row, c) += 2 * (e / (y + e)) * (e / (y + e));
+        const double e = options_.sparse * options_.sparse;
+        cost(row, c) += 2 * (e / (squared + e)) * (e / (squared + e));
       }
-    return mean * cost;
+    return times * mean * cost;
   }
 
   // Gauss-Newton: the least squares of the coefficients in the first `free` rows, by conjugate gradients.
-  void solve(Eigen::Index free, bool sparse) {
-    const Columns cost = penalties(sparse);
+  void solve(Eigen::Index free, const Columns& cost) {
     const double mean = 1.0 / static_cast<double>(given_.size());
     const double caution = options_.caution * mean;
     Columns precondition(coefficients_.rows(), 3);
@@ -266,6 +324,9 @@ class RateFit {
   const std::vector<char> held_;
   std::vector<Vec3> given_;  // the mesh's points before
   std::vector<FitSample> samples_;
+  std::vector<FitAnchor> homes_;               // of the samples on the given mesh
+  std::vector<int> home_faces_;                // ... and the faces that these are on
+  std::vector<double> errors_, errors_given_;  // mean square distances, as parts of them at each vertex: now, of the given mesh
   Columns coefficients_;
 };
 

@@ -24,6 +24,9 @@ constexpr std::size_t preamble = magic.size() + 1;
 
 // Samples a direction of the distances that a prefix is chosen by.
 constexpr std::int64_t samples = 50000;
+constexpr std::int64_t floor_samples = 200000;  // ... that a fitted mesh is judged by
+// Times the distance of the mesh that is given, that of a fitted one is too far; below a fraction of the diagonal it is near whatever the other is.
+constexpr double higher_floor = 1.05, no_floor = 1e-5;
 
 [[noreturn]] void corrupt(const std::string& what) { throw Error(ErrorCode::CorruptStream, "not a valid hierarchy stream: " + what); }
 
@@ -78,17 +81,31 @@ std::vector<Vec3> points_at(const QuadMesh& given, const QuadMesh& mesh, const G
   return points;
 }
 
-// The final mesh, with its vertices where the fewest details are needed if the options and the hierarchy allow it.
-QuadMesh fitted_mesh(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
-  QuadMesh mesh = hierarchy.final_mesh();
-  if (options.fit == StreamFit::None) return mesh;
+struct Fitted {
+  QuadMesh mesh;
+  std::shared_ptr<const PolygonSoup> surface;
+};
+
+// The final mesh, with its vertices where the fewest details are needed; nothing unless the options and the hierarchy allow it.
+std::optional<Fitted> fitted(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
+  if (options.fit == StreamFit::None) return std::nullopt;
+  const QuadMesh mesh = hierarchy.final_mesh();
   for (const Vec3& point : mesh.points)
-    if (!point.allFinite()) return mesh;
-  if (options.surface) return fit_for_rate(hierarchy, *options.surface, RateFitOptions(), progress);
-  if (!hierarchy.has_maps()) return mesh;
-  const PolygonSoup surface = mapped_surface(hierarchy);
-  if (surface.polygon_count() == 0 || !lies_on(mesh, surface, progress)) return mesh;
-  return fit_for_rate(hierarchy, surface, RateFitOptions(), progress);
+    if (!point.allFinite()) return std::nullopt;
+  std::shared_ptr<const PolygonSoup> surface = options.surface;
+  if (!surface) {
+    if (!hierarchy.has_maps()) return std::nullopt;
+    surface = std::make_shared<const PolygonSoup>(mapped_surface(hierarchy));
+    if (surface->polygon_count() == 0 || !lies_on(mesh, *surface, progress)) return std::nullopt;
+  }
+  return Fitted{fit_for_rate(hierarchy, *surface, RateFitOptions(), progress), std::move(surface)};
+}
+
+// Whether the whole of a fitted mesh's stream would be farther from the surface than that of the mesh that is given.
+bool raises_floor(const Fitted& fit, const QuadMesh& given, const Progress& progress) {
+  const DistanceReference reference(*fit.surface);
+  const auto floor = [&](const QuadMesh& mesh) { return reference.distance(to_soup(mesh), {floor_samples, 1}, progress).l2; };
+  return floor(fit.mesh) > higher_floor * floor(given) + no_floor;
 }
 
 PolygonSoup final_soup(const Decoded& stream) {
@@ -126,29 +143,27 @@ std::size_t shortest(const std::vector<std::uint8_t>& bytes, double error, const
   return enough;
 }
 
-}  // namespace
+// A stream of these points of the final mesh, as long as bytes are allowed.
+struct Encoded {
+  std::vector<std::uint8_t> bytes;
+  std::shared_ptr<const StreamGeometry> geometry;
+};
 
-bool is_stream(const std::uint8_t* data, std::size_t size) { return size >= magic.size() && std::equal(magic.begin(), magic.end(), data); }
-
-std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
-  if (hierarchy.node_count() == 0) throw Error(ErrorCode::InvalidInput, "an empty hierarchy has no stream");
-  progress.stage("fitting");
-  const QuadMesh given = fitted_mesh(hierarchy, options, progress.part(0, 0.6));
-  progress.stage("coding");
+Encoded encoded(const HybridMesh& hierarchy, const QuadMesh& given, const StreamOptions& options, const Progress& progress) {
   BitWriter writer;
   StreamCoder coder(writer, &hierarchy);
   const std::shared_ptr<StreamGeometry> geometry = stream_geometry(coder.code_structure());
   const QuadMesh mesh = geometry->mesh.final_mesh();
   const std::vector<Vec3> points = points_at(given, mesh, [&](VertexId vertex) { return coder.given_vertex(vertex); });
-  progress(0.62);
+  progress(0.1);
   const StreamContent all = analyse(*geometry, points);
-  progress(0.7);
+  progress(0.3);
   StreamContent known;
   coder.code_head(static_cast<int>(geometry->steps.size()), known, &all);
   coder.code_base(*geometry, known, &all);
   const std::size_t base = preamble + writer.size() + 4;
   coder.code_planes(*geometry, known, &all);
-  progress(0.75);
+  progress(0.4);
   std::vector<std::uint8_t> bytes(magic.begin(), magic.end());
   bytes.push_back(version);
   const std::vector<std::uint8_t> body = writer.finish();
@@ -159,12 +174,37 @@ std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const Strea
                   "the base alone takes about " + std::to_string(base) + " bytes, more than " + std::to_string(options.most_bytes));
     bytes.resize(options.most_bytes);
   }
-  if (options.error > 0) {
-    const PolygonSoup reference = options.surface ? *options.surface : to_soup(hierarchy.final_mesh());
-    bytes.resize(shortest(bytes, options.error, geometry, reference, progress.part(0.75, 1)));
+  return {std::move(bytes), geometry};
+}
+
+}  // namespace
+
+bool is_stream(const std::uint8_t* data, std::size_t size) { return size >= magic.size() && std::equal(magic.begin(), magic.end(), data); }
+
+std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
+  if (hierarchy.node_count() == 0) throw Error(ErrorCode::InvalidInput, "an empty hierarchy has no stream");
+  progress.stage("fitting");
+  const QuadMesh given = hierarchy.final_mesh();
+  const std::optional<Fitted> fit = fitted(hierarchy, options, progress.part(0, 0.6));
+  const bool both = fit && raises_floor(*fit, given, progress.part(0.6, 0.6));
+  progress.stage("coding");
+  const PolygonSoup reference = options.surface ? *options.surface : to_soup(given);
+  const auto made = [&](const QuadMesh& mesh, const Progress& part) {
+    Encoded stream = encoded(hierarchy, mesh, options, part.part(0, 0.4));
+    if (options.error > 0) stream.bytes.resize(shortest(stream.bytes, options.error, stream.geometry, reference, part.part(0.4, 1)));
+    return stream;
+  };
+  Encoded stream = made(fit ? fit->mesh : given, progress.part(0.6, both ? 0.8 : 1));
+  if (both) {
+    Encoded other = made(given, progress.part(0.8, 1));
+    const DistanceReference surface(reference);
+    const auto error = [&](const Encoded& s) { return error_of(s.bytes, s.bytes.size(), s.geometry, surface, progress.part(1, 1)); };
+    const double here = error(stream), there = error(other);
+    const bool enough = std::max(here, there) <= options.error;
+    if (enough ? other.bytes.size() < stream.bytes.size() : there < here) stream = std::move(other);
   }
   progress(1);
-  return bytes;
+  return std::move(stream.bytes);
 }
 
 HybridMesh decode_stream(const std::uint8_t* data, std::size_t size) {

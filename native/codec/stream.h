@@ -16,6 +16,7 @@ namespace hybrid_mesh {
 // (see wavelet_step.h). Maps, metadata and names of vertices are not in it.
 enum class StreamFit {
   Auto,  // the final mesh is fitted for the rate (rate_fit.h) to the surface that is given, else to that under the hierarchy's maps if it lies on it
+         // (or the final mesh that is given where that makes the better stream: the fitted one is farther from the surface, beyond 5 %)
   None   // the final mesh that is given is what the whole of the stream has
 };
 
@@ -25,7 +26,7 @@ struct StreamOptions {
   // decoded, of no more than this fraction of the first one's bounding-box diagonal (see distance.h). 0: no bound
   double error = 0;
   StreamFit fit = StreamFit::Auto;
-  std::shared_ptr<const PolygonSoup> surface;  // that the final mesh was made of; none: it is not at hand
+  std::shared_ptr<const PolygonSoup> surface = nullptr;  // that the final mesh was made of; none: it is not at hand
 };
 
 // Throws Error{Unsupported} if an operation is switched off, Error{InvalidInput} if the hierarchy is empty, positions are not finite, or the bound on

@@ -19,7 +19,10 @@ namespace fs = std::filesystem;
 // With all that a container holds: operations (one switched off), maps, positions of levels and of the final mesh.
 HybridMesh full() {
   HybridMesh mesh = grid(3, 2);
-  for (int q = 0; q < 6; ++q) mesh.set_map(q, make_map(3, 0.2, q, [&](double u, double v) { return Vec3(q % 3 + u, q / 3 + v, 0.1 * u * v); }));
+  for (int q = 0; q < 6; ++q) {
+    const int column = q % 3, row = q / 3;
+    mesh.set_map(q, make_map(3, 0.2, q, [&](double u, double v) { return Vec3(column + u, row + v, 0.1 * u * v); }));
+  }
   mesh.refine_uniform(1);
   for (int n : {1, 7, 9, 11}) mesh.refine_balanced(mesh.first_child(n % 6) + n % 4);
   EXPECT_EQ(mesh.apply(cube_on(mesh, mesh.first_child(mesh.first_child(1) + 1) + 2)), "");

@@ -21,7 +21,10 @@ Vec3 on_sheet(double x, double y) { return {x, y, 0.2 * std::sin(2.5 * x) * std:
 
 HybridMesh noisy_sheet(double noise) {
   HybridMesh mesh = grid(3, 2);
-  for (int q = 0; q < mesh.base_count(); ++q) mesh.set_map(q, make_map(16, 0, 1, [&](double u, double v) { return on_sheet(q % 3 + u, q / 3 + v); }));
+  for (int q = 0; q < mesh.base_count(); ++q) {
+    const int column = q % 3, row = q / 3;
+    mesh.set_map(q, make_map(16, 0, 1, [&](double u, double v) { return on_sheet(column + u, row + v); }));
+  }
   mesh.refine_uniform(4);
   QuadMesh final = mesh.final_mesh();
   std::mt19937 random(3);
@@ -43,6 +46,26 @@ PolygonSoup sheet() {
   QuadMesh mesh = fine.final_mesh();
   for (Vec3& p : mesh.points) p = on_sheet(p.x(), p.y());
   return to_soup(mesh);
+}
+
+// The sheet with a finger that leans over, thinner than coarse faces are. Quads are drawn together where it stands.
+Vec3 on_finger(double x, double y) {
+  const double dx = x - 1.6, dy = y - 0.9, near = std::exp(-6 * (dx * dx + dy * dy));
+  return on_sheet(x - 0.9 * near * dx, y - 0.9 * near * dy) + near * near * Vec3(0.5 * near, 0.2, 1.5);
+}
+
+struct Scene {
+  HybridMesh mesh;
+  PolygonSoup surface;
+};
+
+Scene finger(double noise) {
+  Scene scene = {noisy_sheet(noise), sheet()};
+  QuadMesh final = scene.mesh.final_mesh();
+  for (Vec3& p : final.points) p = on_finger(p.x(), p.y());
+  scene.mesh.set_final_positions(final);
+  for (Vec3& p : scene.surface.points) p = on_finger(p.x(), p.y());
+  return scene;
 }
 
 TEST(RateFit, TransposedProductsAreTransposed) {
@@ -86,6 +109,33 @@ TEST(RateFit, ComesAsCloseWithFewerBytes) {
     return encode_stream(mesh, options, Progress(context)).size();
   };
   EXPECT_LT(size(StreamFit::Auto), 0.7 * static_cast<double>(size(StreamFit::None)));
+}
+
+// Coarse levels miss the finger, or lie on its wrong side.
+TEST(RateFit, WhatIsThinIsFoundAgain) {
+  for (const double noise : {0.0, 0.01}) {
+    const Scene scene = finger(noise);
+    const double before = l2(scene.surface, scene.mesh.final_mesh());
+    EXPECT_LT(l2(scene.surface, fit_for_rate(scene.mesh, scene.surface, RateFitOptions(), Progress(context))), 1.05 * before + 1e-5);
+  }
+}
+
+TEST(RateFit, TheWholeOfAStreamIsAsNearAsTheExactOne) {
+  for (const Scene& scene : {finger(0.01), Scene{noisy_sheet(0), sheet()}, Scene{noisy_sheet(0.02), sheet()}}) {
+    const auto coded = [&](StreamFit fit, double error) {
+      StreamOptions options;
+      options.fit = fit;
+      options.error = error;
+      options.surface = std::make_shared<const PolygonSoup>(scene.surface);
+      return encode_stream(scene.mesh, options, Progress(context));
+    };
+    const auto floor = [&](const std::vector<std::uint8_t>& bytes) {
+      return l2(scene.surface, decode_stream(bytes.data(), bytes.size()).final_mesh());
+    };
+    const double exact = floor(coded(StreamFit::None, 0));
+    EXPECT_LT(floor(coded(StreamFit::Auto, 0)), 1.07 * exact + 1e-5);
+    EXPECT_LE(floor(coded(StreamFit::Auto, 1.1 * exact + 2e-5)), 1.12 * exact + 2e-5);
+  }
 }
 
 TEST(RateFit, BoundariesStayWhereTheyAre) {
