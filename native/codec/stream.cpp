@@ -130,8 +130,7 @@ double error_of(const std::vector<std::uint8_t>& bytes, std::size_t size, const 
 
 // By bisection, as if the error fell all along the stream, to within 1/256 of the size.
 std::size_t shortest(const std::vector<std::uint8_t>& bytes, double error, const std::shared_ptr<const StreamGeometry>& geometry,
-                     const PolygonSoup& given, const Progress& progress) {
-  const DistanceReference reference(given);
+                     const DistanceReference& reference, const Progress& progress) {
   std::size_t too_short = 0, enough = bytes.size();
   for (int step = 0; enough - too_short > 1 + enough / 256; ++step) {
     progress(1 - 1.0 / (step + 1));
@@ -188,17 +187,17 @@ std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const Strea
   const std::optional<Fitted> fit = fitted(hierarchy, options, progress.part(0, 0.6));
   const bool both = fit && raises_floor(*fit, given, progress.part(0.6, 0.6));
   progress.stage("coding");
-  const PolygonSoup reference = options.surface ? *options.surface : to_soup(given);
+  std::optional<DistanceReference> reference;
+  if (options.error > 0 || both) reference.emplace(options.surface ? *options.surface : to_soup(given));
   const auto made = [&](const QuadMesh& mesh, const Progress& part) {
     Encoded stream = encoded(hierarchy, mesh, options, part.part(0, 0.4));
-    if (options.error > 0) stream.bytes.resize(shortest(stream.bytes, options.error, stream.geometry, reference, part.part(0.4, 1)));
+    if (options.error > 0) stream.bytes.resize(shortest(stream.bytes, options.error, stream.geometry, *reference, part.part(0.4, 1)));
     return stream;
   };
   Encoded stream = made(fit ? fit->mesh : given, progress.part(0.6, both ? 0.8 : 1));
   if (both) {
     Encoded other = made(given, progress.part(0.8, 1));
-    const DistanceReference surface(reference);
-    const auto error = [&](const Encoded& s) { return error_of(s.bytes, s.bytes.size(), s.geometry, surface, progress.part(1, 1)); };
+    const auto error = [&](const Encoded& s) { return error_of(s.bytes, s.bytes.size(), s.geometry, *reference, progress.part(1, 1)); };
     const double here = error(stream), there = error(other);
     const bool enough = std::max(here, there) <= options.error;
     if (enough ? other.bytes.size() < stream.bytes.size() : there < here) stream = std::move(other);

@@ -14,6 +14,7 @@ namespace hybrid_mesh {
 // A hierarchy as one embedded stream (FORMAT.md): connectivity and a rough base, then details from coarse to fine. Every prefix that has the base
 // whole is a stream; the more there is of it, the nearer positions come. It carries the final mesh; levels have what analysis of it leaves of them
 // (see wavelet_step.h). Maps, metadata and names of vertices are not in it.
+
 enum class StreamFit {
   Auto,  // the final mesh is fitted for the rate (rate_fit.h) to the surface that is given, else to that under the hierarchy's maps if it lies on it
          // (or the final mesh that is given where that makes the better stream: the fitted one is farther from the surface, beyond 5 %)

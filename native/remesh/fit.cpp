@@ -146,9 +146,10 @@ Closest walk(const TriangleCover& t, const std::vector<Vec3>& p, const Vec3& x, 
 }
 
 // Edge neighbours of every vertex, for the uniform Laplacian (the mean of the neighbours less the vertex).
-struct Neighbours {
-  std::vector<int> row, column;
-  explicit Neighbours(const QuadMesh& mesh) {
+struct Neighbours : CompressedRows {
+  explicit Neighbours(const QuadMesh& mesh) : CompressedRows(along_edges(mesh)) {}
+
+  static std::vector<std::vector<int>> along_edges(const QuadMesh& mesh) {
     std::vector<std::vector<int>> lists(mesh.points.size());
     for (std::size_t f = 0; f < mesh.face_count(); ++f)
       for (std::int64_t i = mesh.offsets[f]; i < mesh.offsets[f + 1]; ++i) {
@@ -156,13 +157,7 @@ struct Neighbours {
         lists[a].push_back(b);
         lists[b].push_back(a);
       }
-    row.push_back(0);
-    for (std::vector<int>& list : lists) {
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-      column.insert(column.end(), list.begin(), list.end());
-      row.push_back(static_cast<int>(column.size()));
-    }
+    return lists;
   }
   Vec3 laplacian(const std::vector<Vec3>& x, int v) const {
     Vec3 sum = Vec3::Zero();

@@ -3,7 +3,6 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
-#include <map>
 
 #include "base/error.h"
 
@@ -83,20 +82,19 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> harmonic_extension(const std::vecto
   std::vector<Eigen::Triplet<double>> entries;
   for (Eigen::Index v = 0; v < count; ++v)
     if (known[v] == Known::Yes) entries.emplace_back(v, v, 1.0);
-  const auto size = static_cast<Eigen::Index>(system.reached.size());
-  std::map<int, Eigen::Index> column;  // of known values that unknown ones depend on
+  std::vector<std::vector<int>> reaches(known.size());  // of each known value: the equations that it is in, once for each edge
   for (const int v : system.reached)
     for (const int w : system.neighbours[v])
-      if (known[w] == Known::Yes) column.emplace(w, static_cast<Eigen::Index>(column.size()));
-  if (size > 0) {
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(column.size()));
-    for (Eigen::Index i = 0; i < size; ++i)
-      for (const int w : system.neighbours[system.reached[i]])
-        if (known[w] == Known::Yes) right(i, column[w]) += 1;
-    const Eigen::MatrixXd solution = system.solver.solve(right);
-    for (const auto& [w, k] : column)
-      for (Eigen::Index i = 0; i < size; ++i)
-        if (solution(i, k) != 0) entries.emplace_back(system.reached[i], w, solution(i, k));
+      if (known[w] == Known::Yes) reaches[w].push_back(system.row[v]);
+  // A column at a time: most are zero nearly everywhere, since an operation's vertices depend on those around it alone.
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.reached.size()));
+  for (std::size_t w = 0; w < reaches.size(); ++w) {
+    if (reaches[w].empty()) continue;
+    for (const int equation : reaches[w]) right[equation] += 1;
+    const Eigen::VectorXd solution = system.solver.solve(right);
+    for (const int equation : reaches[w]) right[equation] = 0;
+    for (Eigen::Index i = 0; i < solution.size(); ++i)
+      if (solution[i] != 0) entries.emplace_back(system.reached[i], static_cast<Eigen::Index>(w), solution[i]);
   }
   Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Remeshes models, encodes them as streams, and prints the bytes at which a stream's prefix comes as near to the scan as each of five L2 distances (the
-larger direction, a fraction of the scan's diagonal), beside those that decimated meshes take in Draco and in meshoptimizer with zstd: the lower hull
-over numbers of triangles and bits of positions. The rows are also written as build/bench/codec.csv, the curves as codec.png beside it."""
+larger direction, a fraction of the scan's diagonal), beside those that decimated meshes take in Draco and in meshoptimizer with zstd: the Pareto
+front over numbers of triangles and bits of positions. The rows are also written as build/bench/codec.csv, the curves as codec.png beside it."""
 
 import sys
 import tempfile
@@ -84,7 +84,7 @@ def run_model(path, arguments, options):
         for codec in arguments.versus if made else []:
             curves[codec] = made[codec]
             for error in ERRORS:
-                size = rate_distortion.hull_bytes(made[codec], error)
+                size = rate_distortion.bytes_at(made[codec], error)
                 row[column(codec, error)] = None if size is None else round(size)
         failures += [f"{model.name}: {failure}"] if failure else []
     return row, curves, failures
@@ -132,7 +132,7 @@ def draw(curves, path):
         axis.axis("off")
     for axis, (name, of_model) in zip(axes.flat, curves.items()):
         for codec, points in of_model.items():
-            line = np.array(points) if codec == "ours" else rate_distortion.lower_hull(points)
+            line = np.array(points) if codec == "ours" else rate_distortion.pareto_front(points)
             axis.loglog(line[:, 0], line[:, 1], label=codec)
         axis.set(title=name, xlabel="bytes", ylabel="L2 / diagonal", ylim=(5e-5, 5e-3))
         axis.grid(which="both", alpha=0.3)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Decimates a mesh of triangles by quadrics: decimation_run.py IN.npz OUT.npz TRIANGLES [TRIANGLES...]
 
-IN has `points` and `faces`; OUT has the same for every target, with its number behind. For every target and number of bits in 8, ..., 13 it also has the
+IN has `points`, `faces` and `bits`; OUT has points and faces for every target, with its number behind. For every target and number of bits it also has the
 bytes of meshoptimizer's vertex and index codecs behind one another, compressed by zstd at its best, as `meshoptimizer TARGET BITS`."""
 
 import sys
@@ -39,7 +39,7 @@ def main(source, result, targets):
     for target in targets:
         points, faces = decimated(data["points"], data["faces"], target)
         made[f"points {target}"], made[f"faces {target}"] = points, faces
-        for bits in range(8, 14):
+        for bits in data["bits"]:
             made[f"meshoptimizer {target} {bits}"] = meshoptimizer_bytes(points, faces, bits)
     np.savez(result, **made)
 

@@ -81,7 +81,7 @@ def decimations(model, targets, folder):
     """What decimation_run.py makes of a model."""
     source, result = folder / "in.npz", folder / "out.npz"
     points, _, indices = model.triangles
-    np.savez(source, points=points, faces=indices.reshape(-1, 3))
+    np.savez(source, points=points, faces=indices.reshape(-1, 3), bits=BITS)
     ended = tools.run([venv_python(), tools.HERE / "decimation_run.py", source, result, *targets])
     if ended.code != 0:
         raise tools.Failure(tools.last_complaint(ended.output))
@@ -111,18 +111,18 @@ def others(native, model):
     return points
 
 
-def lower_hull(points):
+def pareto_front(points):
     """Of (bytes, distance): those that no other one beats in both, by bytes. It is not made convex: what is between two of them is not to be had by mixing."""
-    hull = []
+    best = []
     for size, found in sorted(points):
-        if not hull or found < hull[-1][1]:
-            hull.append((size, found))
-    return np.array(hull)
+        if not best or found < best[-1][1]:
+            best.append((size, found))
+    return np.array(best)
 
 
-def hull_bytes(points, error):
-    """Bytes at a distance on the lower hull, straight in logarithms between two of its points; None beyond it."""
-    hull = lower_hull(points)
-    if not hull[-1, 1] <= error <= hull[0, 1]:
+def bytes_at(points, error):
+    """Bytes at a distance on the Pareto front, straight in logarithms between two of its points; None beyond it."""
+    best = pareto_front(points)
+    if not best[-1, 1] <= error <= best[0, 1]:
         return None
-    return float(np.exp(np.interp(-np.log(error), -np.log(hull[:, 1]), np.log(hull[:, 0]))))
+    return float(np.exp(np.interp(-np.log(error), -np.log(best[:, 1]), np.log(best[:, 0]))))

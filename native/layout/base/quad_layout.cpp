@@ -441,7 +441,8 @@ class QuadCoarsening : private QuadPairs {
   bool has_bodies() const { return components_.faces.size() > 1; }
   bool is_finished(int component) const { return component >= 0 && finished_[component]; }
 
-  // The triangles of a small closed body may pair to quads that clean each other away. A lone one has the whole budget.
+  // The triangles of a small closed body may pair to quads that clean each other away. Of a lone one another base is tried then, with other
+  // near-ties.
   void clean_sparing_small_components() {
     const State before = state();
     clean();
