@@ -12,8 +12,8 @@ namespace {
 
 class AngleRelaxation {
  public:
-  AngleRelaxation(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options)
-      : mesh_(mesh), fixed_(fixed), options_(options) {
+  AngleRelaxation(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, CrossingGuard* guard)
+      : mesh_(mesh), fixed_(fixed), options_(options), guard_(guard) {
     // The quads around every vertex.
     row_.assign(mesh.points.size() + 1, 0);
     for (std::size_t f = 0; f < mesh.face_count(); ++f)
@@ -126,8 +126,9 @@ class AngleRelaxation {
     home_.insert({v, {p, options_.reach * shortest}});
     const auto& [start, allowed] = home_.at(v);
     for (double t = 1; t > 0.05; t *= 0.5)
-      if ((p + t * d - start).norm() <= allowed && energy(v, p + t * d) < here - 1e-4) {
+      if ((p + t * d - start).norm() <= allowed && energy(v, p + t * d) < here - 1e-4 && (!guard_ || guard_->allows(v, p + t * d))) {
         mesh_.points[v] = p + t * d;
+        if (guard_) guard_->moved(v);
         return true;
       }
     return false;
@@ -136,14 +137,16 @@ class AngleRelaxation {
   QuadMesh& mesh_;
   const std::vector<char>& fixed_;
   const AngleRelaxationOptions& options_;
+  CrossingGuard* const guard_;
   std::vector<int> row_, faces_;
   std::unordered_map<int, std::pair<Vec3, double>> home_;  // per vertex that moved: where it was at the start, and how far it may go
 };
 
 }  // namespace
 
-void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress) {
-  AngleRelaxation(mesh, fixed, options).run(progress);
+void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress,
+                  CrossingGuard* guard) {
+  AngleRelaxation(mesh, fixed, options, guard).run(progress);
 }
 
 }  // namespace hybrid_mesh

@@ -5,6 +5,7 @@
 
 #include "base/context.h"
 #include "hierarchy/hybrid_mesh.h"
+#include "remesh/crossing_guard.h"
 
 namespace hybrid_mesh {
 
@@ -16,7 +17,9 @@ struct AngleRelaxationOptions {
 };
 
 // Moves vertices along the surface, in the tangent plane of the mesh, so that the corners of its quads come nearer to right angles; lengths are free.
-// Vertices with `fixed` set stay. A fit should follow, which brings the vertices back onto the surface.
-void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress);
+// Vertices with `fixed` set stay. A fit should follow, which brings the vertices back onto the surface. `guard`: that lets no
+// more faces run through others.
+void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress,
+                  CrossingGuard* guard = nullptr);
 
 }  // namespace hybrid_mesh

@@ -7,6 +7,7 @@
 
 #include "remesh/angle_relaxation.h"
 #include "remesh/crossing_faces.h"
+#include "remesh/crossing_guard.h"
 #include "remesh/surface_samples.h"
 
 namespace hybrid_mesh {
@@ -62,12 +63,12 @@ class SampleFit {
   }
 
   // What is still folded is unfolded even where the surface bends: a few quads, at the cost of a little distance.
-  void unfold(QuadMesh& mesh) const {
+  void unfold(QuadMesh& mesh, CrossingGuard* guard = nullptr) const {
     AngleRelaxationOptions unfold;
     unfold.enough = 0.05;
     unfold.flatness = -1;
     unfold.reach = options_.unfold;
-    relax_angles(mesh, held_, unfold, progress_);
+    relax_angles(mesh, held_, unfold, progress_, guard);
   }
 
   // A fit may push one sheet of a thin part, or one side of a fold, through the other; with its vertices on the surface the mesh seldom does that.
@@ -82,9 +83,11 @@ class SampleFit {
     const TakenBack second = take_back_crossings(again, mesh_.points, progress_);
     const double after = squared_distance(again);
     if (second.left <= first.left && after <= before) mesh_ = std::move(again);
-    const std::vector<Vec3> folded = mesh_.points;
-    unfold(mesh_);
-    take_back_crossings(mesh_, folded, progress_);
+    // What is left, and what going back has folded, vertex by vertex.
+    CrossingGuard guard(mesh_);
+    unfold(mesh_, &guard);
+    separate_faces(mesh_, held_, on_surface, guard, progress_);
+    unfold(mesh_, &guard);
   }
 
   // The sum over the samples, with their weights.

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "hierarchy/hybrid_mesh.h"
+#include "surface/closest_point.h"
+#include "surface/triangulation.h"
+
+namespace hybrid_mesh {
+
+// Counts, while a mesh's vertices are moved one by one, which of its faces run through others. Keeps a reference to the mesh.
+class CrossingGuard {
+ public:
+  explicit CrossingGuard(const QuadMesh& mesh);
+
+  // The pairs of faces, one of them at the vertex, that meet elsewhere than at the vertices that they share, if the vertex is at a place.
+  int crossings(int v, const Vec3& place) const;
+  // May the vertex go there: are there no more such pairs than now?
+  bool allows(int v, const Vec3& place) const { return crossings(v, place) <= crossings(v, mesh_.points[v]); }
+  // To be called for every vertex that has been moved.
+  void moved(int v);
+
+  const std::vector<int>& faces_at(int v) const { return faces_at_[v]; }
+
+ private:
+  std::vector<int> faces_in_box(const Vec3& low, const Vec3& high) const;
+
+  const QuadMesh& mesh_;
+  std::vector<std::vector<int>> faces_at_;  // per vertex
+  const Triangulation start_;               // of the mesh as it was at the start
+  const SurfaceDistanceQuery at_start_;     // on these triangles
+  std::vector<char> has_moved_;             // per face
+  std::vector<int> moved_faces_;
+};
+
+// Moves vertices of faces that run through one another, one by one, each to where fewer pairs at it do: of a few places nearby and on its way from
+// `before` the nearest with the least. No quad is folded by that. Vertices with `fixed` set stay.
+void separate_faces(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, CrossingGuard& guard, const Progress& progress);
+
+}  // namespace hybrid_mesh
