@@ -62,8 +62,7 @@ void CarriedMap::carry(const GlobalMapOptions& options, const Progress& progress
 }
 
 MappedSurface CarriedMap::cut(const Progress& progress) const {
-  ChartMesh rounded = charts;
-  MappedSurface mapped = glue_patch_maps(extract_patch_maps(rounded, layout, faces_, progress), layout, faces_);
+  MappedSurface mapped = glue_patch_maps(extract_patch_maps(charts, layout, faces_, progress), layout, faces_);
   mapped.surface.mesh.sizes = surface_->sizes;
   return mapped;
 }
