@@ -105,7 +105,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   base_options.seed = request.seed;
   base_options.mirror = task.source.mirror;
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
-  const BaseDomain base = make_base(task, origin, in_use);
+  BaseDomain base = make_base(task, origin, in_use);
   check_size(base, budget, task.source, features);
   const WorkingSurface& working = in_use.of(task, origin);
   Found<BaseMap> map = map_to_base(working.mesh, base, layout_search_options(options, budget, base, request), task.progress.part(0.15, 0.5));

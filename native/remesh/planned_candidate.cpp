@@ -77,7 +77,7 @@ std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   if (plan.origin->tower) {
     map = map_to_tower(task, *plan.origin->tower, faces, working);
   } else {
-    const Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
+    Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
     if (!base) return std::nullopt;
     map = map_to_base(working.of(task, *plan.origin).mesh, *base.value, plan.origin->script, task.progress.part(0.15, 0.45));
   }

@@ -16,9 +16,9 @@ struct BaseMap {
 
 // Maps `surface` to `base`, whose layout is improved on the way: found on a coarse version of the surface, and carried back to the surface vertex by
 // vertex.
-Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress);
+Found<BaseMap> map_to_base(const TriangleSurface& surface, BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress);
 // What a script says instead of a search: with one that came of the same surface and base the same map.
-Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress);
+Found<BaseMap> map_to_base(const TriangleSurface& surface, BaseDomain& base, const LayoutScript& script, const Progress& progress);
 // On a surface that is cut along its base's sides already, which stay as they are.
 Found<BaseMap> map_to_base(const TriangleSurface& surface, PatchedSurface base, const Progress& progress);
 
