@@ -9,7 +9,9 @@ namespace hybrid_mesh {
 
 // The smooth map of a surface to the quads of its base domain.
 struct BaseMap {
-  PatchedSurface layout;  // nodes and neighbours; its points and faces are those of the charts and name those of the surface. Its sides are of no use
+  // Nodes and neighbours; its points and faces are those of the charts and name those of the surface. None: the charts' are the surface's own. Its
+  // sides are of no use.
+  PatchedSurface layout;
   ChartMesh charts;
   LayoutScript script;  // how the layout was improved
 };
