@@ -38,22 +38,6 @@ int least_quads(const TopologySummary& topology) {
   return static_cast<int>(std::max(6.0 * topology.components, 12.0 * topology.genus) + 4.0 * topology.boundary_loops);
 }
 
-// The construction of a base, whose quads get their maps.
-Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
-  Construction made(map.layout.graph(), measured_area(working.mesh), task.base.version(), working.mesh.sizes);
-  for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
-    for (int i = 0; i < 4; ++i)
-      if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
-  std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, working.mesh.faces, task.progress.part(0.5, 0.55));
-  for (int q = 0; q < map.layout.patch_count(); ++q) {
-    const char* defect = find_map_defect(maps[q]);
-    if (*defect) throw NoMap("the map of the base's quad " + std::to_string(q) + ": " + defect);
-    working.to_repaired(maps[q], task.base.mesh);
-    made.set_map(q, std::move(maps[q]));
-  }
-  return made;
-}
-
 // More quads than this in a base, of which not even one level is within the budget, take long to map and leave nothing to refine.
 constexpr int kMostQuads = 4000;
 
@@ -112,11 +96,13 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   if (!map) throw NoMap(map.reason);
   if (has_twins(map->layout.graph())) throw NoMap("two of the base's quads have the same corners");
   origin.script = map->script;
+  // Tried with one operation and another, but of one map, which by then has made room.
+  const Construction constructed = construct(task, working, std::move(*map));
   const auto made_with = [&](std::int64_t most_quads, bool skin) {
     LateTopology late;
     // What quads need is no part of a plan, which could not make the base again.
     const std::optional<Plan::Origin> again = task.need ? std::nullopt : std::optional(origin);
-    Candidate c = assemble_candidate(task, working, *map, again, [&](Construction& made) {
+    Candidate c = assemble_candidate(task, working, constructed, again, [&](Construction& made) {
       if (!working.features.empty()) return std::vector<Plan::Region>();  // a region's quads would not keep them
       std::vector<Plan::Region> regions = grow_skin(made, task, skin ? skin_options(task, budget, base, request) : SkinOptions());
       late = open_late(made, task, most_quads);
@@ -217,6 +203,23 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
     if (irregular[v]) names.push_back(mesh.vertex[v]);
   std::sort(names.begin(), names.end());
   return names;
+}
+
+Construction construct(const RemeshTask& task, const WorkingSurface& working, BaseMap map) {
+  task.watch.start("extract");
+  Construction made(map.layout.graph(), measured_area(working.mesh), task.base.version(), working.mesh.sizes);
+  for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
+  std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, working.mesh.faces, task.progress.part(0.5, 0.55));
+  map.charts = {};
+  for (std::size_t q = 0; q < maps.size(); ++q) {
+    const char* defect = find_map_defect(maps[q]);
+    if (*defect) throw NoMap("the map of the base's quad " + std::to_string(q) + ": " + defect);
+    working.to_repaired(maps[q], task.base.mesh);
+    made.set_map(static_cast<int>(q), std::move(maps[q]));
+  }
+  return made;
 }
 
 namespace {
@@ -328,12 +331,10 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   return {{std::nullopt, failure}, std::max<std::int64_t>(0, least)};
 }
 
-Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
+Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, Construction made, const std::optional<Plan::Origin>& origin,
                              const Operations& operations) {
   const Placement& placement = task.source.placement;
-  const QuadGraph base = map.layout.graph();
-  task.watch.start("extract");
-  Construction made = construct(map, task, working);
+  const QuadGraph base = made.quads().graph();
   task.watch.start("map");
   const std::vector<Plan::Region> regions = operations(made);
   task.watch.start("extract");

@@ -51,7 +51,7 @@ Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, std::in
 Found<Candidate> assembled(const RemeshTask& task, const WorkingSurface& working, Found<BaseMap> map, const std::optional<Plan::Origin>& origin,
                            const Operations& operations) {
   if (!map) return {std::nullopt, map.reason};
-  return found([&] { return assemble_candidate(task, working, std::move(*map), origin, operations); });
+  return found([&] { return assemble_candidate(task, working, construct(task, working, std::move(*map)), origin, operations); });
 }
 
 // A base on four points of the boundary. From then on the plan has its quads.
