@@ -20,7 +20,8 @@ namespace hybrid_mesh {
 // What is remeshed, read and repaired once for all candidates. With symmetry there are two: the whole, which results are measured against, and its
 // half, which is remeshed and then mirrored.
 struct Source {
-  TriangleSurface repaired;  // where the input stands
+  std::size_t read_points = 0, read_polygons = 0;  // of the input
+  TriangleSurface repaired;                        // where the input stands
   RepairReport repairs;
   int removed_handles = 0;   // of noise, see RemeshOptions::remove_noise
   TopologySummary topology;  // of `repaired`
@@ -62,6 +63,6 @@ std::optional<FeatureOptions> feature_options(Features features, double angle);
 void look_for_features(Source& source, const RemeshOptions& options);
 
 // Throws Error{InvalidInput} where strict mode refuses repairs.
-Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);
+Source read_source(PolygonSoup input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);
 
 }  // namespace hybrid_mesh
