@@ -216,7 +216,7 @@ Construction construct(const RemeshTask& task, const WorkingSurface& working, Ba
   for (std::size_t q = 0; q < maps.size(); ++q) {
     const char* defect = find_map_defect(maps[q]);
     if (*defect) throw NoMap("the map of the base's quad " + std::to_string(q) + ": " + defect);
-    working.to_repaired(maps[q], task.base.mesh);
+    working.to_repaired(maps[q], task.surface());
     made.set_map(static_cast<int>(q), std::move(maps[q]));
   }
   return made;
@@ -253,13 +253,13 @@ const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
     const auto make = [&](bool all_of_cut) {
-      surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
+      surface_ = make_working_surface(task.surface(), task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
                                       feature_options(features, angle), task.sizes());
     };
     make(false);
     if (const std::optional<Vec3>& mirror = task.source.mirror) {
       // Mending may move a boundary by its tolerance: off the plane.
-      const double wanted = length_of_cut(task.source.placement.to_unit(task.base.mesh), *mirror);
+      const double wanted = length_of_cut(task.source.placement.to_unit(task.surface()), *mirror);
       if (std::abs(length_of_cut(surface_.mesh, *mirror) - wanted) > tolerance::same_place) make(true);
       hold_ends_of_cut(surface_, *mirror);
     }

@@ -53,6 +53,8 @@ struct RemeshTask {
   const Progress& progress;
   Stopwatch& watch;
   std::shared_ptr<const SizeField> need = {};  // sizes of quads as an earlier mesh has shown that the surface needs them; none: those of the source
+  // What base and maps are made on, K^0, where the input stands.
+  const TriangleSurface& surface() const { return base.closed ? *base.closed : source.repaired; }
   const std::shared_ptr<const SizeField>& sizes() const { return need ? need : source.density.sizes; }
 };
 
