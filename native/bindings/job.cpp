@@ -50,7 +50,7 @@ std::shared_ptr<PythonJob> start_remesh(const py::object& points, const py::obje
                                         const py::object& density) {
   auto result = std::make_shared<RemeshResult>();  // written by the job's thread until it is done
   return start_job([input = soup_from_arrays(points, offsets, indices, density), options = remesh_options_from_dict(settings),
-                    result](Context& context) { *result = remesh(input, options, context); },
+                    result](Context& context) mutable { *result = remesh(std::move(input), options, context); },
                    [result, made = std::optional<PythonResult>()]() mutable {
                      if (!made) made.emplace(result);
                      return py::cast(*made);

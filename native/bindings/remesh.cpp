@@ -202,8 +202,8 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
 PythonResult remesh_and_wait(const py::object& points, const py::object& offsets, const py::object& indices, const py::dict& settings,
                              const py::object& density) {
   const RemeshOptions options = remesh_options_from_dict(settings);
-  const PolygonSoup soup = soup_from_arrays(points, offsets, indices, density);
-  return PythonResult(run_interruptibly([&](Context& context) { return std::make_shared<RemeshResult>(remesh(soup, options, context)); }));
+  PolygonSoup soup = soup_from_arrays(points, offsets, indices, density);
+  return PythonResult(run_interruptibly([&](Context& context) { return std::make_shared<RemeshResult>(remesh(std::move(soup), options, context)); }));
 }
 
 py::dict final_mesh(const PythonResult& result) {

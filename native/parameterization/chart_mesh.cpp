@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/error.h"
 #include "surface/size_field.h"
@@ -16,21 +17,21 @@ double cross(const Complex& a, const Complex& b) { return a.real() * b.imag() - 
 }  // namespace
 
 Transition Transition::inverse() const {
-  Transition t{static_cast<std::int8_t>((4 - turns) & 3), 0, 0};
-  const Complex c = t.rotate(Complex(-x, -y));
+  Transition t{(4u - turns) & 3u, 0, 0};
+  const Complex c = t.rotate(-offset());
   t.x = static_cast<std::int32_t>(c.real());
   t.y = static_cast<std::int32_t>(c.imag());
   return t;
 }
 
 Transition operator*(const Transition& a, const Transition& b) {
-  const Complex c = a(Complex(b.x, b.y));
-  return {static_cast<std::int8_t>((a.turns + b.turns) & 3), static_cast<std::int32_t>(c.real()), static_cast<std::int32_t>(c.imag())};
+  const Complex c = a(b.offset());
+  return {(a.turns + b.turns) & 3u, static_cast<std::int32_t>(c.real()), static_cast<std::int32_t>(c.imag())};
 }
 
 Transition across(int side, int other_side) {
   static const std::array<Complex, 4> square{Complex(0, 0), Complex(1, 0), Complex(1, 1), Complex(0, 1)};
-  Transition t{static_cast<std::int8_t>((other_side + 2 - side + 4) & 3), 0, 0};
+  Transition t{static_cast<unsigned>(other_side + 2 - side + 4) & 3u, 0, 0};
   const Complex c = square[(other_side + 1) % 4] - t.rotate(square[side]);
   t.x = static_cast<std::int32_t>(c.real());
   t.y = static_cast<std::int32_t>(c.imag());
@@ -129,20 +130,21 @@ void ChartMesh::hold_features(const std::vector<char>& corner) {
   }
 }
 
-ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const TriangleSurface& fine, const std::vector<int>& vertex_of,
+ChartMesh::ChartMesh(const ChartMesh& charts, EditMesh collapsed, const TriangleSurface& fine, const std::vector<int>& vertex_of,
                      std::vector<char> sharp_edges)
-    : mesh(collapsed),
+    : mesh(std::move(collapsed)),
       points(fine.points),
       fineness(fineness_at_points(fine)),
       sharp(std::move(sharp_edges)),
       scale(charts.scale),
       sizes_(fine.sizes) {
-  const std::size_t halves = collapsed.origin.size();
+  const std::size_t halves = mesh.origin.size();
   uv.assign(points.size(), Complex(0, 0));
   kind.assign(points.size(), Kind::Free);
   chart.assign(halves / 3, -1);
   corner.resize(halves);
   gluing.resize(halves);
+  flat_.reserve(halves / 3);  // once all is back; what is grown step by step takes twice the room
   double area = 0;
   for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f)
     if (charts.mesh.alive[f]) {
@@ -151,7 +153,7 @@ ChartMesh::ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const T
       area += 0.5 * (charts.points[charts.mesh.origin[3 * f + 1]] - a).cross(charts.points[charts.mesh.origin[3 * f + 2]] - a).norm() * finer * finer;
     }
   scale *= std::sqrt(area / measured_area(fine));
-  if (charts.mesh.face_count != collapsed.face_count) throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
+  if (charts.mesh.face_count != mesh.face_count) throw Error(ErrorCode::Internal, "charts are carried to a mesh with other triangles");
   for (int f = 0; f < static_cast<int>(charts.mesh.alive.size()); ++f) {
     if (!charts.mesh.alive[f]) continue;
     const int h = mesh.find(vertex_of[charts.mesh.from(3 * f)], vertex_of[charts.mesh.to(3 * f)]);
@@ -183,6 +185,10 @@ std::vector<int> ChartMesh::movable_vertices() const {
 }
 
 const FlatTriangle& ChartMesh::flat(int f) const {
+  if (flat_scale_ != scale) {
+    for (Flat& known : flat_) known.corners = {-1, -1, -1};
+    flat_scale_ = scale;
+  }
   if (flat_at_.size() != chart.size()) flat_at_.resize(chart.size(), -1);
   if (flat_at_[f] < 0) {
     flat_at_[f] = static_cast<std::int32_t>(flat_.size());
@@ -190,8 +196,8 @@ const FlatTriangle& ChartMesh::flat(int f) const {
   }
   Flat& known = flat_[flat_at_[f]];
   const int a = mesh.origin[3 * f], b = mesh.origin[3 * f + 1], c = mesh.origin[3 * f + 2];
-  if (known.corners[0] != a || known.corners[1] != b || known.corners[2] != c || known.scale != scale)
-    known = {{a, b, c}, scale, flatten(points[a], points[b], points[c], scale * fineness_on_face(fineness, a, b, c))};
+  if (known.corners[0] != a || known.corners[1] != b || known.corners[2] != c)
+    known = {{a, b, c}, flatten(points[a], points[b], points[c], scale * fineness_on_face(fineness, a, b, c))};
   return known.triangle;
 }
 
@@ -199,6 +205,11 @@ void ChartMesh::remember_flat() const {
   flat_.reserve(mesh.face_count);
   for (int f = 0; f < static_cast<int>(mesh.alive.size()); ++f)
     if (mesh.alive[f]) flat(f);
+}
+
+void ChartMesh::forget_flat() {
+  flat_ = {};
+  flat_at_ = {};
 }
 
 double ChartMesh::finer_on(int f) const { return fineness_on_face(fineness, mesh.origin[3 * f], mesh.origin[3 * f + 1], mesh.origin[3 * f + 2]); }

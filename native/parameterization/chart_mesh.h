@@ -15,12 +15,14 @@ namespace hybrid_mesh {
 
 // z -> i^turns z + (x + i y): how one chart of the integer grid continues in another.
 struct Transition {
-  std::int8_t turns = 0;
-  std::int32_t x = 0, y = 0;
+  // In one word: a map has two of them a half-edge.
+  std::uint64_t turns : 2 = 0;
+  std::int64_t x : 31 = 0, y : 31 = 0;
 
-  Complex operator()(const Complex& z) const { return rotate(z) + Complex(x, y); }
+  Complex operator()(const Complex& z) const { return rotate(z) + offset(); }
+  Complex offset() const { return {static_cast<double>(x), static_cast<double>(y)}; }
   Complex rotate(const Complex& z) const {
-    switch (turns & 3) {
+    switch (turns) {
       case 0:
         return z;
       case 1:
@@ -31,8 +33,8 @@ struct Transition {
         return {z.imag(), -z.real()};
     }
   }
-  Complex rotate_back(const Complex& z) const { return Transition{static_cast<std::int8_t>((4 - turns) & 3), 0, 0}.rotate(z); }
-  Complex back(const Complex& z) const { return rotate_back(z - Complex(x, y)); }
+  Complex rotate_back(const Complex& z) const { return Transition{(4u - turns) & 3u, 0, 0}.rotate(z); }
+  Complex back(const Complex& z) const { return rotate_back(z - offset()); }
   Transition inverse() const;
   friend bool operator==(const Transition& a, const Transition& b) = default;
 };
@@ -57,7 +59,7 @@ class ChartMesh {
   // The same charts over another mesh with the same triangles: one that was collapsed from the surface `fine`. `vertex_of`: per vertex of `charts`
   // that is alive its vertex there; `sharp_edges`: per name of an edge of `collapsed` whether it is on a feature, empty for none. What was collapsed
   // comes back by undo_collapse(). Throws Error{Internal} if the triangles differ.
-  ChartMesh(const ChartMesh& charts, const EditMesh& collapsed, const TriangleSurface& fine, const std::vector<int>& vertex_of,
+  ChartMesh(const ChartMesh& charts, EditMesh collapsed, const TriangleSurface& fine, const std::vector<int>& vertex_of,
             std::vector<char> sharp_edges);
 
   Complex at(int h) const { return corner[h](uv[mesh.origin[h]]); }  // the position of from(h) in the chart of h's face
@@ -67,6 +69,7 @@ class ChartMesh {
   const FlatTriangle& flat(int f) const;
   // Remembers those of all faces that are alive: as long as nothing but positions changes, flat() only reads, and may be called from several threads.
   void remember_flat() const;
+  void forget_flat();
   void move_point(int v, const Vec3& place);  // on the surface
   // Of the edge between two vertices, as even quads count it.
   double squared_length(int a, int b) const;
@@ -114,12 +117,12 @@ class ChartMesh {
 
   struct Flat {
     std::array<int, 3> corners{-1, -1, -1};
-    double scale = 0;
     FlatTriangle triangle;
   };
   // In the order in which they were first asked for: of the faces of a mesh that is to be uncollapsed few are alive.
   mutable std::vector<Flat> flat_;
   mutable std::vector<std::int32_t> flat_at_;  // per face, -1: never asked for
+  mutable double flat_scale_ = 0;              // with which they were made
 };
 
 }  // namespace hybrid_mesh

@@ -2,6 +2,7 @@
 #include "parameterization/collapse_hierarchy.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "parameterization/cone_motion.h"
 #include "parameterization/relaxation_sweeps.h"
@@ -74,11 +75,11 @@ void CollapseHierarchy::collapse(int target) {
   }
 }
 
-void CollapseHierarchy::resume(const std::vector<int>& log) {
-  log_ = log;
+void CollapseHierarchy::resume(std::vector<int> log) {
+  log_ = std::move(log);
   // A sweep whenever the mesh has grown by a fifth.
   double vertices = c_.mesh.vertex_count;
-  const double all = vertices + static_cast<double>(log.size());
+  const double all = vertices + static_cast<double>(log_.size());
   while (vertices < all) {
     levels_.push_back(static_cast<std::size_t>(all - vertices));
     vertices *= 1.2;

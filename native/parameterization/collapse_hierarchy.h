@@ -43,7 +43,7 @@ class CollapseHierarchy {
   // Collapses down to `target` vertices.
   void collapse(int target);
   // Takes over collapses that were made elsewhere, the last one last.
-  void resume(const std::vector<int>& log);
+  void resume(std::vector<int> log);
   // Undoes all collapses. Throws NoMap where a vertex finds no place.
   void refine(const Progress& progress);
 

@@ -92,11 +92,11 @@ std::vector<int> uncut_map(ChartMesh& charts, const PatchedSurface& surface, con
   return InsertionMerging(charts, Distortion{options.theta}, surface).merge_all(progress);
 }
 
-GlobalMapReport carry_map(ChartMesh& charts, const std::vector<int>& log, const GlobalMapOptions& options, const Progress& progress) {
+GlobalMapReport carry_map(ChartMesh& charts, std::vector<int> log, const GlobalMapOptions& options, const Progress& progress) {
   GlobalMapReport report;
   const std::vector<char> all_allowed;
   CollapseHierarchy hierarchy(charts, options, all_allowed, report);
-  hierarchy.resume(log);
+  hierarchy.resume(std::move(log));
   hierarchy.refine(progress);
   report.energy = mean_energy(charts, StarRelaxation(charts, Distortion{options.theta}));
   return report;

@@ -33,6 +33,6 @@ GlobalMapReport smooth_map_surely(ChartMesh& charts, const PatchedSurface& surfa
 std::vector<int> uncut_map(ChartMesh& charts, const PatchedSurface& surface, const GlobalMapOptions& options, const Progress& progress);
 
 // Undoes the half-edge collapses in `log`, last one first, and smooths the map on the way.
-GlobalMapReport carry_map(ChartMesh& charts, const std::vector<int>& log, const GlobalMapOptions& options, const Progress& progress);
+GlobalMapReport carry_map(ChartMesh& charts, std::vector<int> log, const GlobalMapOptions& options, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -21,7 +22,7 @@ struct GridPoint {
 
 GridPoint apply(const Transition& t, const GridPoint& p) {
   GridPoint r = p;
-  switch (t.turns & 3) {
+  switch (t.turns) {
     case 1:
       r = {-p.y, p.x};
       break;
@@ -73,7 +74,7 @@ int side_of(const Piece& p, int side) {
 
 class Extraction {
  public:
-  Extraction(ChartMesh& charts, const PatchedSurface& surface, const std::vector<std::array<int, 3>>& repaired_faces)
+  Extraction(const ChartMesh& charts, const PatchedSurface& surface, const std::vector<std::array<int, 3>>& repaired_faces)
       : c_(charts), surface_(surface), repaired_faces_(repaired_faces) {}
 
   std::vector<PatchMap> run(const Progress& progress) {
@@ -104,17 +105,16 @@ class Extraction {
       if (kOne - r < margin) return x - (margin - (kOne - r));
       return x;
     };
-    std::vector<GridPoint> exact(c_.uv.size());
     for (int v = 0; v < static_cast<int>(c_.uv.size()); ++v) {
       if (!c_.mesh.vertex_alive(v)) continue;
       const Complex z = c_.uv[v];
       GridPoint p{std::llround(z.real() * static_cast<double>(kOne)), std::llround(z.imag() * static_cast<double>(kOne))};
-      exact[v] = grid_[v] = p;
+      grid_[v] = p;
     }
     // One after the other: a point is moved off a line only if its star stays unfolded; else by the least amount.
     for (int v = 0; v < static_cast<int>(c_.uv.size()); ++v) {
       if (!c_.mesh.vertex_alive(v) || !c_.movable(v)) continue;
-      const GridPoint p = exact[v];
+      const GridPoint p = grid_[v];
       const bool free_x = c_.kind[v] != ChartMesh::Kind::SlideV, free_y = c_.kind[v] != ChartMesh::Kind::SlideU;
       for (const std::int64_t step : {std::int64_t{0}, std::int64_t{1}}) {
         GridPoint moved = p;
@@ -219,10 +219,11 @@ class Extraction {
     return std::all_of(p.begin(), p.end(), [](const GridPoint& x) { return x.x > 0 && x.x < kOne && x.y > 0 && x.y < kOne; });
   }
 
-  PatchMap extract(int q) const {
+  PatchMap extract(int q) {
     Growing growing;
-    growing.index.reserve(parts_[q].size());
-    for (const Part& part : parts_[q]) {
+    const std::vector<Part> parts = std::exchange(parts_[q], {});
+    growing.index.reserve(parts.size());
+    for (const Part& part : parts) {
       const Corners p = corners_in(part.face, part.to_patch);
       add_piece(part.face, p, clip(p), growing);
     }
@@ -234,6 +235,7 @@ class Extraction {
       area += 0.5 * (a.x() * b.y() - a.y() * b.x());
     }
     if (!(std::abs(area - 1) < 1e-6)) throw NoMap("the map covers base quad " + std::to_string(q) + " " + std::to_string(area) + " times");
+    growing.map.compact();
     return std::move(growing.map);
   }
 
@@ -316,12 +318,16 @@ class Extraction {
     }
   }
 
+  // The face of the repaired surface that a face of the charts lies on, and where on it a point is.
+  int source_face(int f) const { return surface_.mesh.source_face.empty() ? f : surface_.mesh.source_face[f]; }
+  PointSource source_of(int v) const { return surface_.source.empty() ? PointSource{{v, -1, -1}, {1, 0, 0}} : surface_.source[v]; }
+
   void add_piece(int f, const Corners& p, const std::vector<Piece>& polygon, Growing& growing) const {
     PatchMap& map = growing.map;
     auto& index = growing.index;
     std::array<std::array<double, 3>, 3> source;  // of the face's corners, in its source face
-    const std::array<int, 3>& source_corners = repaired_faces_[surface_.mesh.source_face[f]];
-    for (int k = 0; k < 3; ++k) source[k] = weights_in_face(surface_.source[c_.mesh.origin[3 * f + k]], source_corners);
+    const std::array<int, 3>& source_corners = repaired_faces_[source_face(f)];
+    for (int k = 0; k < 3; ++k) source[k] = weights_in_face(source_of(c_.mesh.origin[3 * f + k]), source_corners);
     const std::size_t n = polygon.size();
     std::vector<int> points(n);
     std::vector<std::array<double, 3>> weights(n);  // in the face
@@ -386,7 +392,7 @@ class Extraction {
     };
     const auto emit = [&](int a, int b, int c) {
       map.triangles.push_back({points[a], points[b], points[c]});
-      map.source_face.push_back(surface_.mesh.source_face[f]);
+      map.source_face.push_back(source_face(f));
       std::array<float, 9> s;
       int at = 0;
       for (const int i : {a, b, c})
@@ -465,7 +471,7 @@ class Extraction {
     }
   }
 
-  ChartMesh& c_;
+  const ChartMesh& c_;
   const PatchedSurface& surface_;
   const std::vector<std::array<int, 3>>& repaired_faces_;
   std::vector<GridPoint> grid_;
@@ -474,8 +480,8 @@ class Extraction {
 
 }  // namespace
 
-std::vector<PatchMap> extract_patch_maps(ChartMesh& charts, const PatchedSurface& surface, const std::vector<std::array<int, 3>>& repaired_faces,
-                                         const Progress& progress) {
+std::vector<PatchMap> extract_patch_maps(const ChartMesh& charts, const PatchedSurface& surface,
+                                         const std::vector<std::array<int, 3>>& repaired_faces, const Progress& progress) {
   return Extraction(charts, surface, repaired_faces).run(progress);
 }
 

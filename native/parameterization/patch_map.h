@@ -18,6 +18,14 @@ struct PatchMap {
   std::vector<int> source_face;               // #T: face of the repaired surface that the triangle lies on
   std::vector<std::array<float, 9>> source;   // #T: barycentrics of the three corners in that face, corner by corner
 
+  // Gives back the room that was kept for growing.
+  void compact() {
+    uv.shrink_to_fit();
+    positions.shrink_to_fit();
+    triangles.shrink_to_fit();
+    source_face.shrink_to_fit();
+    source.shrink_to_fit();
+  }
   bool is_on_side(std::size_t v, int side) const { return (side % 2 == 0 ? uv[v].y() : uv[v].x()) == (side == 0 || side == 3 ? 0.0 : 1.0); }
 };
 

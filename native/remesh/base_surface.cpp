@@ -28,6 +28,7 @@ SurfaceVersion BaseSurface::version() const { return {series, std::vector<bool>(
 
 std::vector<char> BaseSurface::held() const {
   if (!series) return {};
+  const TriangleSurface& mesh = *closed;
   std::vector<char> on_rim(mesh.points.size(), 0), held(mesh.faces.size(), 0);
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     if (series->face_event[f] >= 0)
@@ -39,23 +40,21 @@ std::vector<char> BaseSurface::held() const {
 
 BaseSurface base_surface(const TriangleSurface& repaired, const Placement& placement, const std::vector<LateEvent>& late) {
   BaseSurface out;
-  if (late.empty()) {
-    out.mesh = repaired;
-  } else {
+  if (!late.empty()) {
     std::vector<TopologyEvent> events;
     for (const LateEvent& e : late) {
       events.push_back(e.event);
       out.levels.push_back(e.level);
     }
     SurfaceSeries series = close_topology(repaired, std::move(events));
-    out.mesh = series.closed;
+    out.closed = series.closed;
     for (TriangleSurface* s : {&series.input, &series.closed}) *s = placement.to_unit(std::move(*s));
     for (auto& of_event : series.patches)
       for (RimPatch& patch : of_event)
         for (Vec3& p : patch.points) p = placement.to_unit(p);
     out.series = std::make_shared<const SurfaceSeries>(std::move(series));
   }
-  out.topology = summarize_topology(to_soup(out.mesh));
+  out.topology = summarize_topology(to_soup(out.closed ? *out.closed : repaired));
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,13 @@ struct BaseSurface {
   };
   std::vector<Unopened> unopened;
 
-  TriangleSurface mesh;                         // where the input stands
-  TopologySummary topology;                     // of `mesh`
+  std::optional<TriangleSurface> closed;        // where the input stands; none where nothing opens late: then it is the repaired surface
+  TopologySummary topology;                     // of the surface
   std::vector<int> levels;                      // per event of the series: on which it is to open, -1: the first that has room
-  std::shared_ptr<const SurfaceSeries> series;  // of unit size; none where nothing opens late. Maps name faces of it, else those of `mesh`
+  std::shared_ptr<const SurfaceSeries> series;  // of unit size; none where nothing opens late. Maps name faces of it, else those of the surface
 
   SurfaceVersion version() const;
-  // Per face of `mesh` whether it is a cap's or tube's, or beside its rim, which has to stay; empty: none is.
+  // Per face of the surface whether it is a cap's or tube's, or beside its rim, which has to stay; empty: none is.
   std::vector<char> held() const;
 };
 

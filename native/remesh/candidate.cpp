@@ -38,22 +38,6 @@ int least_quads(const TopologySummary& topology) {
   return static_cast<int>(std::max(6.0 * topology.components, 12.0 * topology.genus) + 4.0 * topology.boundary_loops);
 }
 
-// The construction of a base, whose quads get their maps.
-Construction construct(BaseMap& map, const RemeshTask& task, const WorkingSurface& working) {
-  Construction made(map.layout.graph(), measured_area(working.mesh), task.base.version(), working.mesh.sizes);
-  for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
-    for (int i = 0; i < 4; ++i)
-      if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
-  std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, working.mesh.faces, task.progress.part(0.5, 0.55));
-  for (int q = 0; q < map.layout.patch_count(); ++q) {
-    const char* defect = find_map_defect(maps[q]);
-    if (*defect) throw NoMap("the map of the base's quad " + std::to_string(q) + ": " + defect);
-    working.to_repaired(maps[q], task.base.mesh);
-    made.set_map(q, std::move(maps[q]));
-  }
-  return made;
-}
-
 // More quads than this in a base, of which not even one level is within the budget, take long to map and leave nothing to refine.
 constexpr int kMostQuads = 4000;
 
@@ -105,18 +89,20 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   base_options.seed = request.seed;
   base_options.mirror = task.source.mirror;
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
-  const BaseDomain base = make_base(task, origin, in_use);
+  BaseDomain base = make_base(task, origin, in_use);
   check_size(base, budget, task.source, features);
   const WorkingSurface& working = in_use.of(task, origin);
   Found<BaseMap> map = map_to_base(working.mesh, base, layout_search_options(options, budget, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);
   if (has_twins(map->layout.graph())) throw NoMap("two of the base's quads have the same corners");
   origin.script = map->script;
+  // Tried with one operation and another, but of one map, which by then has made room.
+  const Construction constructed = construct(task, working, std::move(*map));
   const auto made_with = [&](std::int64_t most_quads, bool skin) {
     LateTopology late;
     // What quads need is no part of a plan, which could not make the base again.
     const std::optional<Plan::Origin> again = task.need ? std::nullopt : std::optional(origin);
-    Candidate c = assemble_candidate(task, working, *map, again, [&](Construction& made) {
+    Candidate c = assemble_candidate(task, working, constructed, again, [&](Construction& made) {
       if (!working.features.empty()) return std::vector<Plan::Region>();  // a region's quads would not keep them
       std::vector<Plan::Region> regions = grow_skin(made, task, skin ? skin_options(task, budget, base, request) : SkinOptions());
       late = open_late(made, task, most_quads);
@@ -219,6 +205,23 @@ std::vector<VertexId> irregular_names(const QuadMesh& mesh) {
   return names;
 }
 
+Construction construct(const RemeshTask& task, const WorkingSurface& working, BaseMap map) {
+  task.watch.start("extract");
+  Construction made(map.layout.graph(), measured_area(working.mesh), task.base.version(), working.mesh.sizes);
+  for (std::size_t q = 0; q < map.layout.sharp.size(); ++q)
+    for (int i = 0; i < 4; ++i)
+      if (map.layout.sharp[q][i]) made.set_sharp(static_cast<int>(q), i);
+  std::vector<PatchMap> maps = extract_patch_maps(map.charts, map.layout, working.mesh.faces, task.progress.part(0.5, 0.55));
+  map.charts = {};
+  for (std::size_t q = 0; q < maps.size(); ++q) {
+    const char* defect = find_map_defect(maps[q]);
+    if (*defect) throw NoMap("the map of the base's quad " + std::to_string(q) + ": " + defect);
+    working.to_repaired(maps[q], task.surface());
+    made.set_map(static_cast<int>(q), std::move(maps[q]));
+  }
+  return made;
+}
+
 namespace {
 
 // Where nothing is mended, see make_working_surface(): around the ends of a half's cut, too, which are to stay where they are, or around all of it.
@@ -250,13 +253,13 @@ const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int
     faces_ = -1;
     surface_ = {};  // what it took is free for the next one
     const auto make = [&](bool all_of_cut) {
-      surface_ = make_working_surface(task.base.mesh, task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
+      surface_ = make_working_surface(task.surface(), task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
                                       feature_options(features, angle), task.sizes());
     };
     make(false);
     if (const std::optional<Vec3>& mirror = task.source.mirror) {
       // Mending may move a boundary by its tolerance: off the plane.
-      const double wanted = length_of_cut(task.source.placement.to_unit(task.base.mesh), *mirror);
+      const double wanted = length_of_cut(task.source.placement.to_unit(task.surface()), *mirror);
       if (std::abs(length_of_cut(surface_.mesh, *mirror) - wanted) > tolerance::same_place) make(true);
       hold_ends_of_cut(surface_, *mirror);
     }
@@ -328,12 +331,10 @@ CandidateSearch search_candidate(const RemeshTask& task, const Target& target, c
   return {{std::nullopt, failure}, std::max<std::int64_t>(0, least)};
 }
 
-Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
+Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, Construction made, const std::optional<Plan::Origin>& origin,
                              const Operations& operations) {
   const Placement& placement = task.source.placement;
-  const QuadGraph base = map.layout.graph();
-  task.watch.start("extract");
-  Construction made = construct(map, task, working);
+  const QuadGraph base = made.quads().graph();
   task.watch.start("map");
   const std::vector<Plan::Region> regions = operations(made);
   task.watch.start("extract");

@@ -72,9 +72,10 @@ Candidate planned_candidate(const RemeshTask& task, const Plan& plan);
 // Does further irregular operations and returns them as a plan has them.
 using Operations = std::function<std::vector<Plan::Region>(Construction& made)>;
 
-// A map to a base and what was decided, as a candidate. `working`: the surface that the map is of. Throws NoMap where the map does not hold, and what
-// `operations` throws.
-Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, BaseMap map, const std::optional<Plan::Origin>& origin,
+// The construction of a base, whose quads get their maps. `working`: the surface that the map is of. Throws NoMap where the map does not hold.
+Construction construct(const RemeshTask& task, const WorkingSurface& working, BaseMap map);
+// It and what was decided, as a candidate. Throws what `operations` throws.
+Candidate assemble_candidate(const RemeshTask& task, const WorkingSurface& working, Construction made, const std::optional<Plan::Origin>& origin,
                              const Operations& operations);
 
 // A working surface that is made again only where another size of triangles is asked for.

@@ -51,7 +51,7 @@ Found<BaseMap> map_to_tower(const RemeshTask& task, BoundaryTower tower, std::in
 Found<Candidate> assembled(const RemeshTask& task, const WorkingSurface& working, Found<BaseMap> map, const std::optional<Plan::Origin>& origin,
                            const Operations& operations) {
   if (!map) return {std::nullopt, map.reason};
-  return found([&] { return assemble_candidate(task, working, std::move(*map), origin, operations); });
+  return found([&] { return assemble_candidate(task, working, construct(task, working, std::move(*map)), origin, operations); });
 }
 
 // A base on four points of the boundary. From then on the plan has its quads.
@@ -77,7 +77,7 @@ std::optional<Candidate> make_again(const RemeshTask& task, const Plan& plan) {
   if (plan.origin->tower) {
     map = map_to_tower(task, *plan.origin->tower, faces, working);
   } else {
-    const Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
+    Found<BaseDomain> base = found([&] { return make_base(task, *plan.origin, working); });
     if (!base) return std::nullopt;
     map = map_to_base(working.of(task, *plan.origin).mesh, *base.value, plan.origin->script, task.progress.part(0.15, 0.45));
   }

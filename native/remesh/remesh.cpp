@@ -263,13 +263,13 @@ void place(Candidate& c, const Placement& placement, const SurfaceSeries* series
   h.set_final_positions(c.final_mesh);
 }
 
-RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
+RemeshResult remesh_in_arena(PolygonSoup input, const RemeshOptions& options, Context& context) {
   check_options(options);
   const Progress progress(context);
   std::optional<Plan> plan;
   if (!options.plan.empty()) plan = plan_from_json(options.plan);
   Stopwatch watch;
-  Source source = read_source(input, options, progress.part(0, 0.04), watch);
+  Source source = read_source(std::move(input), options, progress.part(0, 0.04), watch);
   BaseSurface base;
   Found<Candidate> symmetric = symmetric_remesh(options, source, base, progress, watch);
   watch.start("topology");
@@ -284,7 +284,7 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
   const RemeshTask task{options, source, base, progress, watch};
   progress.stage("measure");
   watch.start("measure");
-  nlohmann::ordered_json report = describe_remesh(task, input, best);
+  nlohmann::ordered_json report = describe_remesh(task, best);
   watch.stop();
   place(best, source.placement, base.series.get());
   report["seconds"] = watch.json();
@@ -295,10 +295,10 @@ RemeshResult remesh_in_arena(const PolygonSoup& input, const RemeshOptions& opti
 
 }  // namespace
 
-RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Context& context) {
+RemeshResult remesh(PolygonSoup input, const RemeshOptions& options, Context& context) {
   // An arena of its own: Blender, in whose process this may run, has threads of its own kind to think of.
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  return arena.execute([&] { return remesh_in_arena(input, options, context); });
+  return arena.execute([&] { return remesh_in_arena(std::move(input), options, context); });
 }
 
 }  // namespace hybrid_mesh

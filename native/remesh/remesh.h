@@ -63,6 +63,6 @@ struct RemeshResult {
 };
 
 // Remeshes a polygon soup. Runs on the calling thread and TBB's. Throws Error.
-RemeshResult remesh(const PolygonSoup& input, const RemeshOptions& options, Context& context);
+RemeshResult remesh(PolygonSoup input, const RemeshOptions& options, Context& context);
 
 }  // namespace hybrid_mesh

@@ -23,7 +23,7 @@ Json operations_of(const HybridMesh& hierarchy, int level) {
   return list;
 }
 
-Json describe_input(const PolygonSoup& input, const Source& source) {
+Json describe_input(const Source& source) {
   const RepairReport& repaired = source.repairs;
   Json r;
   r["merged_points"] = repaired.merged_points;
@@ -35,7 +35,7 @@ Json describe_input(const PolygonSoup& input, const Source& source) {
   r["nonmanifold_vertices"] = repaired.nonmanifold_vertices;
   r["one_sided_cuts"] = repaired.one_sided_cuts;
   r["dropped_components"] = repaired.dropped_components;
-  return {{"vertices", input.points.size()},          {"faces", input.polygon_count()},
+  return {{"vertices", source.read_points},           {"faces", source.read_polygons},
           {"components", source.topology.components}, {"boundary_loops", source.topology.boundary_loops},
           {"genus", source.topology.genus},           {"repaired", r}};
 }
@@ -138,7 +138,7 @@ Json describe_features(const RemeshTask& task, const Candidate& c) {
   return features;
 }
 
-Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& c) {
+Json describe_remesh(const RemeshTask& task, const Candidate& c) {
   const TopologySummary t = summarize_topology(to_soup(c.final_mesh)), &topology = task.source.made;
   if (t.nonmanifold_edges || t.nonmanifold_vertices || t.misoriented_edges || t.components != topology.components ||
       t.boundary_loops != topology.boundary_loops || t.euler != topology.euler)
@@ -147,7 +147,7 @@ Json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Can
   const Finished finished = measured(task, c, task.progress.part(0.95, 1));
   const QuadQuality& q = finished.quality;
   Json report;
-  report["input"] = describe_input(input, task.source);
+  report["input"] = describe_input(task.source);
   report["topology"] = describe_topology(task, c);
   report["features"] = describe_features(task, c);
   if (!task.source.density.name.empty()) report["density"] = describe_density(task.source.density, c.final_mesh);

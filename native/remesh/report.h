@@ -15,6 +15,6 @@ nlohmann::ordered_json describe_level(const HybridMesh& hierarchy, int level, co
 
 // The report of a finished candidate, without file name, settings, seconds and memory. Throws Error{Internal} if the final mesh does not have the
 // surface's topology.
-nlohmann::ordered_json describe_remesh(const RemeshTask& task, const PolygonSoup& input, const Candidate& candidate);
+nlohmann::ordered_json describe_remesh(const RemeshTask& task, const Candidate& candidate);
 
 }  // namespace hybrid_mesh

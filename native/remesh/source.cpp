@@ -76,10 +76,12 @@ std::optional<FeatureOptions> feature_options(Features features, double angle) {
   return options;
 }
 
-Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch) {
+Source read_source(PolygonSoup input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch) {
   progress.stage("repair");
   watch.start("repair");
   Source source;
+  source.read_points = input.points.size();
+  source.read_polygons = input.polygon_count();
   RepairOptions repair_options;
   repair_options.drop_components = options.drop_components;
   source.repaired = repair(input, repair_options, source.repairs, progress);
@@ -93,9 +95,8 @@ Source read_source(const PolygonSoup& input, const RemeshOptions& options, const
   look_for_features(source, options);
   source.density = read_density(input, options.density, source.repaired, source.placement);
   source.fingerprint = fingerprint(source.repaired, source.density.sizes ? source.density.values : std::vector<double>());
-  PolygonSoup unit = input;
-  for (Vec3& p : unit.points) p = source.placement.to_unit(p);
-  source.reference = std::make_unique<const DistanceReference>(unit);
+  for (Vec3& p : input.points) p = source.placement.to_unit(p);
+  source.reference = std::make_unique<const DistanceReference>(input);
   watch.stop();
   return source;
 }

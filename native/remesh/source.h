@@ -20,7 +20,8 @@ namespace hybrid_mesh {
 // What is remeshed, read and repaired once for all candidates. With symmetry there are two: the whole, which results are measured against, and its
 // half, which is remeshed and then mirrored.
 struct Source {
-  TriangleSurface repaired;  // where the input stands
+  std::size_t read_points = 0, read_polygons = 0;  // of the input
+  TriangleSurface repaired;                        // where the input stands
   RepairReport repairs;
   int removed_handles = 0;   // of noise, see RemeshOptions::remove_noise
   TopologySummary topology;  // of `repaired`
@@ -52,6 +53,8 @@ struct RemeshTask {
   const Progress& progress;
   Stopwatch& watch;
   std::shared_ptr<const SizeField> need = {};  // sizes of quads as an earlier mesh has shown that the surface needs them; none: those of the source
+  // What base and maps are made on, K^0, where the input stands.
+  const TriangleSurface& surface() const { return base.closed ? *base.closed : source.repaired; }
   const std::shared_ptr<const SizeField>& sizes() const { return need ? need : source.density.sizes; }
 };
 
@@ -62,6 +65,6 @@ std::optional<FeatureOptions> feature_options(Features features, double angle);
 void look_for_features(Source& source, const RemeshOptions& options);
 
 // Throws Error{InvalidInput} where strict mode refuses repairs.
-Source read_source(const PolygonSoup& input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);
+Source read_source(PolygonSoup input, const RemeshOptions& options, const Progress& progress, Stopwatch& watch);
 
 }  // namespace hybrid_mesh

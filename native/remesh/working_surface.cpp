@@ -205,6 +205,7 @@ WorkingSurface make_working_surface(const TriangleSurface& repaired, const Place
   w.mesh.sizes = quad_sizes;
   w.place = std::move(shaped.place);
   w.placement = placement;
+  if (!shaped.unchanged) w.query = std::move(shaped.query);
   const bool has_boundary = std::find(placed.opposite.begin(), placed.opposite.end(), -1) != placed.opposite.end();
   const bool quartered = quarter_small_components(w, placed);
   if (features) w.features = find_features(w.mesh, *features);

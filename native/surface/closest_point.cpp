@@ -32,7 +32,7 @@ struct Box {
 };
 
 struct Corners {
-  Vec3 a, b, c;
+  const Vec3 &a, &b, &c;
 };
 
 // Based on: Ericson, Real-Time Collision Detection, 2005, section 5.1.5. Triangles without area are taken as the segments or points they
@@ -104,21 +104,29 @@ class SurfaceDistanceQuery::Tree {
     const double size = (box.high / 2 - box.low / 2).maxCoeff();
     std::frexp(size, &exponent_);
     const int count = static_cast<int>(faces.size());
-    corners_.resize(count);
     order_.resize(count);
-    std::vector<Box> boxes(count);
-    std::vector<Corners> corners(count);
-    for (int f = 0; f < count; ++f) {
-      corners[f] = {local(points[faces[f][0]]), local(points[faces[f][1]]), local(points[faces[f][2]])};
-      for (const Vec3& p : {corners[f].a, corners[f].b, corners[f].c}) boxes[f].add(p);
-    }
     std::iota(order_.begin(), order_.end(), 0);
-    nodes_.reserve(2 * (count / leaf_size + 1));
-    build(0, count, boxes, progress);
+    {
+      std::vector<Box> boxes(count);
+      for (int f = 0; f < count; ++f)
+        for (const int v : faces[f]) boxes[f].add(local(points[v]));
+      nodes_.reserve(nodes_for(count));
+      build(0, count, boxes, progress);
+    }
     slot_.resize(count);
+    corners_.resize(count);
+    points_.reserve(std::min(points.size(), 3 * faces.size()));
+    std::vector<int> renamed(points.size(), -1);
     for (int i = 0; i < count; ++i) {
-      corners_[i] = corners[order_[i]];
       slot_[order_[i]] = i;
+      for (int k = 0; k < 3; ++k) {
+        const int v = faces[order_[i]][k];
+        if (renamed[v] < 0) {
+          renamed[v] = static_cast<int>(points_.size());
+          points_.push_back(local(points[v]));
+        }
+        corners_[i][k] = renamed[v];
+      }
     }
   }
 
@@ -138,11 +146,12 @@ class SurfaceDistanceQuery::Tree {
       const Entry entry = stack[--depth];
       if (entry.distance > best.squared_distance) continue;  // equal ones may hold an earlier face
       const Node& node = nodes_[entry.node];
-      if (node.second < 0) {
+      if (node.begin >= 0) {
         for (int i = node.begin; i < node.end; ++i) test(i, p, best);
         continue;
       }
-      Entry near{nodes_[entry.node + 1].box.squared_distance(p), entry.node + 1}, far{nodes_[node.second].box.squared_distance(p), node.second};
+      const int second = node.second();
+      Entry near{nodes_[entry.node + 1].box.squared_distance(p), entry.node + 1}, far{nodes_[second].box.squared_distance(p), second};
       if (far.distance < near.distance) std::swap(near, far);
       if (far.distance <= best.squared_distance) stack[depth++] = far;
       if (near.distance <= best.squared_distance) stack[depth++] = near;
@@ -153,7 +162,7 @@ class SurfaceDistanceQuery::Tree {
 
   double squared_distance(const Vec3& point, int face) const {
     std::array<double, 3> weights;
-    return std::ldexp(closest_on_triangle(local(point), corners_[slot_[face]], weights), 2 * exponent_);
+    return std::ldexp(closest_on_triangle(local(point), triangle(slot_[face]), weights), 2 * exponent_);
   }
 
   bool faces_in_box(const Vec3& low, const Vec3& high, std::size_t most, std::vector<int>& faces) const {
@@ -166,14 +175,14 @@ class SurfaceDistanceQuery::Tree {
       const int index = stack[--depth];
       const Node& node = nodes_[index];
       if (!box.meets(node.box)) continue;
-      if (node.second >= 0) {
-        stack[depth++] = node.second;
+      if (node.begin < 0) {
+        stack[depth++] = node.second();
         stack[depth++] = index + 1;
         continue;
       }
       for (int i = node.begin; i < node.end; ++i) {
         Box own;
-        for (const Vec3& p : {corners_[i].a, corners_[i].b, corners_[i].c}) own.add(p);
+        for (const int v : corners_[i]) own.add(points_[v]);
         if (!box.meets(own)) continue;
         if (faces.size() == most) return false;
         faces.push_back(order_[i]);
@@ -185,12 +194,17 @@ class SurfaceDistanceQuery::Tree {
  private:
   struct Node {
     Box box;
-    int begin, end;   // of a leaf: its triangles
-    int second = -1;  // the second child; the first one follows its parent
+    int begin, end;  // of a leaf: its triangles; else -1 and the second child: the first one follows its parent
+    int second() const { return end; }
   };
   static constexpr int leaf_size = 4;
 
+  // How many there are over so many triangles.
+  static std::size_t nodes_for(int count) { return count <= leaf_size ? 1 : 1 + nodes_for(count / 2) + nodes_for(count - count / 2); }
+
   Vec3 local(const Vec3& p) const { return scaled(Vec3(p / 2 - centre_ / 2), exponent_ - 1); }
+
+  Corners triangle(int slot) const { return {points_[corners_[slot][0]], points_[corners_[slot][1]], points_[corners_[slot][2]]}; }
 
   int build(int begin, int end, const std::vector<Box>& boxes, const Progress* progress) {
     constexpr int few = 4096;  // faces, which take no time
@@ -212,13 +226,14 @@ class SurfaceDistanceQuery::Tree {
       return a != b ? a < b : f < g;
     });
     build(begin, middle, boxes, progress);
-    nodes_[index].second = build(middle, end, boxes, progress);
+    nodes_[index].begin = -1;
+    nodes_[index].end = build(middle, end, boxes, progress);
     return index;
   }
 
   void test(int slot, const Vec3& p, ClosestPoint& best) const {
     std::array<double, 3> weights;
-    const double d = closest_on_triangle(p, corners_[slot], weights);
+    const double d = closest_on_triangle(p, triangle(slot), weights);
     if (d > best.squared_distance || (d == best.squared_distance && order_[slot] >= best.face)) return;
     best.squared_distance = d;
     best.weights = weights;
@@ -226,9 +241,11 @@ class SurfaceDistanceQuery::Tree {
   }
 
   std::vector<Node> nodes_;
-  std::vector<Corners> corners_;  // in the order of the leaves
-  std::vector<int> order_;        // the face of each
-  std::vector<int> slot_;         // the reverse
+  // Of the triangles, in the order of the leaves, and so are the points: what is looked at together is near in memory, and takes little of it.
+  std::vector<std::array<int, 3>> corners_;
+  std::vector<Vec3> points_;
+  std::vector<int> order_;  // the face of each triangle
+  std::vector<int> slot_;   // the reverse
   Vec3 centre_;
   int exponent_ = 0;
 };

@@ -103,6 +103,9 @@ void add_triangles(const PolygonSoup& soup, std::vector<char>& on_rim, Faces& fa
   if (entries.empty()) throw Error(ErrorCode::InvalidInput, "a surface without area has no distances");
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& e, const Entry& f) { return e.code < f.code; });
   double total = 0;
+  faces.triangles.reserve(entries.size());
+  faces.rim.reserve(entries.size());
+  faces.area_up_to.reserve(entries.size());
   for (const Entry& e : entries) {
     faces.triangles.push_back(e.triangle);
     faces.rim.push_back(on_rim[e.triangle[0]] + on_rim[e.triangle[1]] + on_rim[e.triangle[2]] > 1);

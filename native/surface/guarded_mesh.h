@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -58,6 +59,8 @@ class GuardedMesh {
   // The mesh as a surface of its own; the place of each of its points goes into `place`, source_face names a face of the input
   // that is closest to the centroid.
   TriangleSurface packed(std::vector<SurfacePoint>& place) const;
+  // Of the input, if it was needed.
+  const std::shared_ptr<const SurfaceDistanceQuery>& query_of_input() const { return query_; }
 
  private:
   struct Star;
@@ -71,7 +74,10 @@ class GuardedMesh {
     return area_vector(points_[mesh_.origin[3 * f]], points_[mesh_.origin[3 * f + 1]], points_[mesh_.origin[3 * f + 2]]);
   }
   // Made when it is first asked for: where nothing is done, which is usual for scans, it would take most of the time.
-  const SurfaceDistanceQuery& query() const { return query_ ? *query_ : query_.emplace(input_); }
+  const SurfaceDistanceQuery& query() const {
+    if (!query_) query_ = std::make_shared<const SurfaceDistanceQuery>(input_);
+    return *query_;
+  }
   // What a flip of the edge may move.
   double tolerance_at(int h) const {
     return released_[h / 3] && (mesh_.opposite[h] < 0 || released_[mesh_.opposite[h] / 3]) ? options_.tolerance : 0;
@@ -80,7 +86,7 @@ class GuardedMesh {
   GuardOptions options_;
   double sharp_cosine_;
   const TriangleSurface& input_;
-  mutable std::optional<SurfaceDistanceQuery> query_;  // see query()
+  mutable std::shared_ptr<const SurfaceDistanceQuery> query_;  // see query()
   EditMesh mesh_;
   std::vector<Vec3> points_;
   std::vector<SurfacePoint> place_;

@@ -248,6 +248,7 @@ WellShaped make_well_shaped(const TriangleSurface& input, const WellShapedOption
   WellShaped result;
   result.mesh = shaping.mesh().packed(result.place);
   result.unchanged = !shaping.changed();
+  result.query = shaping.mesh().query_of_input();
   return result;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/context.h"
+#include "surface/closest_point.h"
 #include "surface/needle_regions.h"
 #include "surface/triangle_surface.h"
 
@@ -27,9 +29,10 @@ struct WellShapedOptions {
 };
 
 struct WellShaped {
-  TriangleSurface mesh;             // source_face: a face of the input that is closest to the face's centroid
-  std::vector<SurfacePoint> place;  // per point, on the input
-  bool unchanged = false;           // points and faces are the input's, in its order
+  TriangleSurface mesh;                               // source_face: a face of the input that is closest to the face's centroid
+  std::vector<SurfacePoint> place;                    // per point, on the input
+  bool unchanged = false;                             // points and faces are the input's, in its order
+  std::shared_ptr<const SurfaceDistanceQuery> query;  // of the input, if it was needed
 };
 
 // A triangulation of the same surface, within the tolerance, whose triangles are not too large, and well shaped where there are needles. Elsewhere

@@ -32,11 +32,13 @@ void redo(EditMesh& mesh, const MeshEdit& edit) {
 class CoarseSurface {
  public:
   // Undoes `log` until `vertices` vertices are alive and nothing but collapses is left.
-  CoarseSurface(const TriangleSurface& surface, const EditMesh& decimated, const MeshFeatures& features, const std::vector<MeshEdit>& log,
-                double vertices, CutSurface& out)
+  CoarseSurface(const TriangleSurface& surface, EditMesh decimated, const MeshFeatures& features, const std::vector<MeshEdit>& log, double vertices,
+                CutSurface& out)
       : surface_(surface), features_(features), log_(log), out_(out), vertex_(surface.points.size(), -1), face_(surface.faces.size(), -1) {
     EditMesh& mesh = out.collapsed;
-    mesh = decimated;
+    mesh = std::move(decimated);
+    for (int h = 0; h < static_cast<int>(mesh.edge.size()); ++h)
+      if (mesh.face_alive(h / 3)) coarsest_.push_back({mesh.edge[h], h});
     const auto is_flip = [](const MeshEdit& e) { return e.kind == MeshEdit::Kind::Flip; };
     const std::size_t first_flip = std::find_if(log.begin(), log.end(), is_flip) - log.begin();
     kept_ = log.size();
@@ -45,7 +47,7 @@ class CoarseSurface {
     compact();
   }
 
-  void cut(const EditMesh& decimated, QuadLayout layout, const Progress& progress) {
+  void cut(QuadLayout layout, const Progress& progress) {
     EditMesh mesh(out_.coarse);
     const MeshFeatures features(out_.coarse, coarse_features(), mesh);
     std::vector<MeshEdit> log;
@@ -55,9 +57,8 @@ class CoarseSurface {
     }
     for (int& v : layout.node_vertex)
       if (v >= 0) v = vertex_[v];
-    std::vector<int> renamed(decimated.edge_count, -1);
-    for (int h = 0; h < static_cast<int>(decimated.edge.size()); ++h)
-      if (decimated.face_alive(h / 3)) renamed[decimated.edge[h]] = mesh.edge[translated(h)];
+    std::vector<int> renamed(out_.collapsed.edge_count, -1);
+    for (const auto& [name, half_edge] : coarsest_) renamed[name] = mesh.edge[translated(half_edge)];
     for (QuadLayout::Curve& c : layout.curves) c = {vertex_[c.start], vertex_[c.end], renamed[c.edge]};
     out_.patches = cut_along_layout(out_.coarse, mesh, features, log, layout, progress);
     out_.sharp = features_.marks();
@@ -99,7 +100,8 @@ class CoarseSurface {
   const MeshFeatures& features_;
   const std::vector<MeshEdit>& log_;
   CutSurface& out_;
-  std::vector<int> vertex_, face_;  // of the surface: the coarse one's, or -1
+  std::vector<int> vertex_, face_;             // of the surface: the coarse one's, or -1
+  std::vector<std::pair<int, int>> coarsest_;  // names of the edges of the decimated mesh, and their half-edges
   std::size_t kept_ = 0;
 };
 
@@ -176,10 +178,22 @@ int BaseDomain::boundary_sides() const {
   return sides;
 }
 
-CutSurface BaseDomain::cut(double vertices_a_quad, const Progress& progress) const {
+EditMesh BaseDomain::take_mesh() {
+  if (walks_.empty()) {
+    const EditMesh& mesh = decimated_.mesh;
+    for (int v = 0; v < static_cast<int>(mesh.out.size()); ++v)
+      if (mesh.vertex_alive(v)) walks_.push_back({v, mesh.out[v]});
+    return std::move(decimated_.mesh);
+  }
+  EditMesh mesh(surface_);
+  for (const MeshEdit& edit : decimated_.log) redo(mesh, edit);
+  for (const auto& [v, h] : walks_) mesh.out[v] = h;
+  return mesh;
+}
+
+CutSurface BaseDomain::cut(double vertices_a_quad, const Progress& progress) {
   CutSurface out;
-  CoarseSurface(surface_, decimated_.mesh, features_, decimated_.log, vertices_a_quad * quads(), out)
-      .cut(decimated_.mesh, decimated_.layout, progress);
+  CoarseSurface(surface_, take_mesh(), features_, decimated_.log, vertices_a_quad * quads(), out).cut(decimated_.layout, progress);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/context.h"
@@ -51,8 +52,8 @@ class BaseDomain {
   int boundary_sides() const;  // but those on the mirror
   bool has_features() const { return !features_.empty(); }
   // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts
-  // it along them.
-  CutSurface cut(double vertices_a_quad, const Progress& progress) const;
+  // it along them. The decimated mesh, which takes as much room as the surface's, goes into the first cut; for another it is made again.
+  CutSurface cut(double vertices_a_quad, const Progress& progress);
 
  private:
   struct Decimated {
@@ -61,12 +62,15 @@ class BaseDomain {
     QuadLayout layout;
   };
   Decimated decimated(double faces, const BaseDomainOptions& options, const Progress& progress) const;
+  EditMesh take_mesh();
 
   const TriangleSurface& surface_;
   MeshFeatures curves_;          // features, and where there are some the boundary too
   MeshFeatures features_;        // with the corners of both
   std::vector<char> on_mirror_;  // see DecimationOptions
   Decimated decimated_;
+  // Once a cut has its mesh: where the walks around its vertices begin, which what was tried and undone has a part in.
+  std::vector<std::pair<int, int>> walks_;
 };
 
 }  // namespace hybrid_mesh

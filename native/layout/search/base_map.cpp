@@ -32,7 +32,7 @@ CarriedMap repeat(CarriedMap map, const LayoutScript& script, GlobalMapOptions o
 // A coarse surface may be too coarse for a map: its triangles would have to bend. Then a finer one is taken, at last the surface itself: for the
 // search, or, where the map that it found cannot be carried to the surface, for that map alone.
 template <class Find>
-BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& base, double vertices, const GlobalMapOptions& options,
+BaseMap map_coarse_to_fine(const TriangleSurface& surface, BaseDomain& base, double vertices, const GlobalMapOptions& options,
                            const Progress& progress, const Find& find) {
   const std::array<double, 3> factors{1, 2, kInfinity};
   const auto version = [&](double factor, const Progress& part) { return CarriedMap(surface, base.cut(factor * vertices / base.quads(), part)); };
@@ -57,14 +57,14 @@ BaseMap map_coarse_to_fine(const TriangleSurface& surface, const BaseDomain& bas
 
 }  // namespace
 
-Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
+Found<BaseMap> map_to_base(const TriangleSurface& surface, BaseDomain& base, const LayoutSearchOptions& options, const Progress& progress) {
   return found([&] {
     return map_coarse_to_fine(surface, base, options.vertices, options.map, progress,
                               [&](CarriedMap map, const Progress& part) { return search_layout(std::move(map), options, part); });
   });
 }
 
-Found<BaseMap> map_to_base(const TriangleSurface& surface, const BaseDomain& base, const LayoutScript& script, const Progress& progress) {
+Found<BaseMap> map_to_base(const TriangleSurface& surface, BaseDomain& base, const LayoutScript& script, const Progress& progress) {
   GlobalMapOptions options;
   options.vertices_a_quad = script.vertices_a_quad;
   return found([&] {

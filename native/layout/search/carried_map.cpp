@@ -37,33 +37,26 @@ CarriedMap::CarriedMap(const TriangleSurface& surface, CutSurface cut)
 void CarriedMap::replace(PatchedSurface cut_layout, ChartMesh cut_charts) {
   layout = std::move(cut_layout);
   charts = std::move(cut_charts);
-  is_cut_ = true;
-}
-
-void CarriedMap::uncut(const GlobalMapOptions& options, const Progress& progress) {
-  if (log_.empty() || !is_cut_) return;
-  ChartMesh coarse = charts;
-  const std::vector<int> vertex_of = uncut_map(coarse, layout, options, progress);
-  charts = ChartMesh(coarse, collapsed_, *surface_, vertex_of, sharp_);
-  is_cut_ = false;
-  layout.mesh = *surface_;
-  layout.patch.clear();
-  layout.sides.clear();
-  layout.source.clear();
-  for (std::size_t f = 0; f < surface_->faces.size(); ++f) layout.mesh.source_face[f] = static_cast<int>(f);
-  for (std::size_t v = 0; v < surface_->points.size(); ++v) layout.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
 }
 
 void CarriedMap::carry(const GlobalMapOptions& options, const Progress& progress) {
   if (log_.empty()) return;
-  uncut(options, progress.part(0, 0.1));
-  carry_map(charts, log_, options, progress.part(0.1, 1));
+  {
+    const std::vector<int> vertex_of = uncut_map(charts, layout, options, progress.part(0, 0.1));
+    charts = ChartMesh(charts, std::move(collapsed_), *surface_, vertex_of, std::move(sharp_));
+  }
+  layout.mesh = {};
+  layout.patch = {};
+  layout.sides = {};
+  layout.source = {};
+  faces_ = {};
+  carry_map(charts, std::move(log_), options, progress.part(0.1, 1));
   log_.clear();
+  charts.forget_flat();
 }
 
 MappedSurface CarriedMap::cut(const Progress& progress) const {
-  ChartMesh rounded = charts;
-  MappedSurface mapped = glue_patch_maps(extract_patch_maps(rounded, layout, faces_, progress), layout, faces_);
+  MappedSurface mapped = glue_patch_maps(extract_patch_maps(charts, layout, faces_, progress), layout, faces_);
   mapped.surface.mesh.sizes = surface_->sizes;
   return mapped;
 }

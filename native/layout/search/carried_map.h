@@ -19,21 +19,18 @@ class CarriedMap {
 
   // Takes another layout of the coarse surface, cut along it, and its map.
   void replace(PatchedSurface cut_layout, ChartMesh cut_charts);
-  // Frees the map of the cuts: the charts' triangles are then those of the coarse surface, and their vertices and faces the surface's own; nothing
-  // happens where the surface itself was cut. Throws NoMap where that cannot be done, and then nothing has changed.
-  void uncut(const GlobalMapOptions& options, const Progress& progress);
-  // The same, and undoes all collapses: the map is the surface's own then.
+  // Frees the map of the cuts and undoes all collapses: the charts' vertices and faces are then the surface's own. Nothing happens where the surface
+  // itself was cut. Throws NoMap where it cannot be done. Either way nothing else can be done with it afterwards: what it took is free.
   void carry(const GlobalMapOptions& options, const Progress& progress);
   // The coarse surface cut along the layout's sides as the map has them.
   MappedSurface cut(const Progress& progress) const;
   const std::vector<std::array<int, 3>>& faces() const { return faces_; }
 
-  PatchedSurface layout;  // its points name vertices of the surface as their source, its faces those of the coarse version
-  ChartMesh charts;       // on `layout.mesh`, or on the uncut coarse surface once it was carried
+  PatchedSurface layout;  // its points name vertices of the surface as their source, its faces those of the coarse version; none once it was carried
+  ChartMesh charts;       // on `layout.mesh`, or on the surface once it was carried
 
  private:
   const TriangleSurface* surface_;
-  bool is_cut_ = true;  // the charts' triangles are parts of the coarse surface's
   EditMesh collapsed_;
   std::vector<int> log_;                   // collapses that made the coarse version
   std::vector<char> sharp_;                // see CutSurface

@@ -104,7 +104,7 @@ TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
       Context context;
       BaseDomainOptions options;
       options.size = size;
-      const BaseDomain base(surface, {}, options, Progress(context));
+      BaseDomain base(surface, {}, options, Progress(context));
       const PatchedSurface p = base.cut(whole_surface, Progress(context)).patches;
       testing::expect_layout(surface, p);
       // A coarser version of the surface has the same layout.
@@ -119,6 +119,28 @@ TEST(BaseDomain, TilesSurfacesOfEveryKindAtEverySize) {
       }
       EXPECT_GT(p.patch_count(), 0);
     }
+  }
+}
+
+// The first cut takes the mesh with it, and a further one makes it again.
+TEST(BaseDomain, IsCutTheSameAtAnyTime) {
+  for (const PolygonSoup& soup : {ball(12), ball(12, 0.4), torus(40, 20)}) {
+    const TriangleSurface surface = unit(repaired(soup));
+    Context context;
+    BaseDomainOptions options;
+    options.size = 40;
+    BaseDomain base(surface, {}, options, Progress(context));
+    const CutSurface first = base.cut(12, Progress(context)), again = base.cut(12, Progress(context));
+    EXPECT_EQ(first.log, again.log);
+    EXPECT_EQ(first.vertex, again.vertex);
+    EXPECT_EQ(first.coarse.faces, again.coarse.faces);
+    EXPECT_EQ(first.collapsed.origin, again.collapsed.origin);
+    EXPECT_EQ(first.collapsed.opposite, again.collapsed.opposite);
+    EXPECT_EQ(first.collapsed.edge, again.collapsed.edge);
+    for (const int v : first.vertex) EXPECT_EQ(first.collapsed.out[v], again.collapsed.out[v]);
+    EXPECT_EQ(first.patches.nodes, again.patches.nodes);
+    EXPECT_EQ(first.patches.sides, again.patches.sides);
+    EXPECT_EQ(first.patches.mesh.faces, again.patches.mesh.faces);
   }
 }
 

@@ -77,7 +77,7 @@ TEST(LayoutEdit, RandomEditsKeepALayoutAndAreTheSameOnCoarseAndFineSurfaces) {
   std::mt19937 random(5);
   for (const PolygonSoup& soup : {ball(12), ball(12, 0.4), torus(40, 20)}) {
     const TriangleSurface surface = unit(repaired(soup));
-    const BaseDomain base = base_of(surface, 40);
+    BaseDomain base = base_of(surface, 40);
     Context context;
     MappedSurface fine{base.cut(whole_surface, Progress(context)).patches, {}};
     CutSurface cut = base.cut(12, Progress(context));
@@ -160,7 +160,7 @@ TEST(GluePatchMaps, UndoesExtraction) {
 TEST(BaseMap, IsBijectiveAndCarriedToEveryVertex) {
   for (const PolygonSoup& soup : {ball(22), ball(20, 0.5), torus(90, 40)}) {
     const TriangleSurface surface = unit(repaired(soup));
-    const BaseDomain base = base_of(surface, 40);
+    BaseDomain base = base_of(surface, 40);
     Context context;
     LayoutSearchOptions options;
     options.quads = 44;
@@ -194,7 +194,7 @@ TEST(LayoutSearch, LowersTheEnergyWithinTheSizeAllowed) {
   for (Vec3& p : soup.points)
     if (p.z() > 0.9 * p.norm()) p.z() += 12 * (p.z() / p.norm() - 0.9) * p.norm();
   const TriangleSurface surface = unit(repaired(soup));
-  const BaseDomain base = base_of(surface, 40);
+  BaseDomain base = base_of(surface, 40);
   Context context;
   const auto energy = [&](int rounds, int quads) {
     CutSurface cut = base.cut(30, Progress(context));
