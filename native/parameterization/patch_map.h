@@ -18,6 +18,9 @@ struct PatchMap {
   std::vector<int> source_face;               // #T: face of the repaired surface that the triangle lies on
   std::vector<std::array<float, 9>> source;   // #T: barycentrics of the three corners in that face, corner by corner
 
+  std::vector<char> inserted;                 // #V: is it one that cutting the surface has put in, so that it may go? Empty: none is known to be
+
+  bool is_inserted(std::size_t v) const { return !inserted.empty() && inserted[v]; }
   bool is_on_side(std::size_t v, int side) const { return (side % 2 == 0 ? uv[v].y() : uv[v].x()) == (side == 0 || side == 3 ? 0.0 : 1.0); }
 };
 
