@@ -42,14 +42,14 @@ std::vector<PatchMap> cut_out(const LevelState& state, const std::vector<int>& q
 
 std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads) { return cut_out(state, quads, clip_map); }
 
-std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads, RootTriangles& roots) {
+std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads, FaceSources& roots) {
   return cut_out(state, quads, [&](const PatchMap& map, const std::vector<DyadicSquare>& squares) {
     std::vector<PatchMap> parts = clip_by_triangles(map, squares);
-    const int first = static_cast<int>(roots.source_face.size());
+    const int first = static_cast<int>(roots.face.size());
     for (PatchMap& part : parts)
       for (int& f : part.source_face) f += first;
-    roots.source_face.insert(roots.source_face.end(), map.source_face.begin(), map.source_face.end());
-    roots.source.insert(roots.source.end(), map.source.begin(), map.source.end());
+    roots.face.insert(roots.face.end(), map.source_face.begin(), map.source_face.end());
+    roots.weights.insert(roots.weights.end(), map.source.begin(), map.source.end());
     return parts;
   });
 }

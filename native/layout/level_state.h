@@ -7,6 +7,7 @@
 
 #include "layout/layout_edit.h"
 #include "layout/layout_outline.h"
+#include "parameterization/face_sources.h"
 #include "parameterization/map_clipping.h"
 #include "surface/placement.h"
 #include "topology/surface_series.h"
@@ -45,13 +46,9 @@ std::vector<std::vector<int>> grouped_by_map(const LevelState& state, const std:
 // The maps of some quads. Throws NoMap where rounding would fold one.
 std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads);
 
-// Triangles of maps out of which others have been cut, and where they lie on the surface: as PatchMap has it.
-struct RootTriangles {
-  std::vector<int> source_face;
-  std::vector<std::array<float, 9>> source;
-};
 // The maps of some quads by the triangles of those out of which they are cut: what lies in one of these was one triangle before.
-std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads, RootTriangles& roots);
+// `roots`: these triangles, and where they lie on the surface.
+std::vector<PatchMap> maps_of(const LevelState& state, const std::vector<int>& quads, FaceSources& roots);
 
 // The quads of `part` alone, numbered in that order; nodes where the part merely touches itself are one.
 QuadGraph part_of(const QuadGraph& graph, const std::vector<int>& part);

@@ -264,6 +264,18 @@ bool ChartMesh::collapse_keeps_map(int h, double least_determinant, double least
   return good && fan < (kind[u] == Kind::Cone ? 3.0 : 4.0);
 }
 
+bool ChartMesh::collapse_keeps_area(int h) const {
+  const int v = mesh.from(h);
+  const Vec3& target = points[mesh.to(h)];
+  double before = 0, after = 0;
+  for_star(v, [&](int g, const Complex&, const Complex&) {
+    const Vec3 &p = points[mesh.to(g)], &q = points[mesh.apex(g)];
+    before += (p - points[v]).cross(q - points[v]).norm();
+    after += (p - target).cross(q - target).norm();
+  });
+  return after <= before * (1 + 1e-9);
+}
+
 void ChartMesh::collapse(int h) {
   const int o = mesh.opposite[h];
   const auto glue = [&](int kept, int lost) {  // of a dead face, as in EditMesh

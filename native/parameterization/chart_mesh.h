@@ -81,6 +81,9 @@ class ChartMesh {
   bool slides_inside(int v) const { return (kind[v] == Kind::SlideU || kind[v] == Kind::SlideV) && !mesh.is_boundary(v); }
   // Would the triangles of from(h)'s star stay counter-clockwise, with determinants and 3D shapes not below the bounds?
   bool collapse_keeps_map(int h, double least_determinant, double least_shape) const;
+  // Would they cover as much of the surface? Within the plane of a face, or of the two beside an edge, triangles that fold over each other have too
+  // much area.
+  bool collapse_keeps_area(int h) const;
   void collapse(int h);
   // Puts from(h) back, at a place where its triangles are counter-clockwise. Returns false if there is none: the vertex is back, but its star is
   // folded.

@@ -35,7 +35,8 @@ class KeptPositions {
 InsertionMerging::InsertionMerging(ChartMesh& charts, const Distortion& density, const PatchedSurface& surface)
     : c_(charts), density_(density), stars_(charts, density), corners_(charts, density), source_(surface.source) {
   original_.resize(source_.size());
-  for (std::size_t v = 0; v < original_.size(); ++v) original_[v] = !is_inserted(static_cast<int>(v));
+  for (std::size_t v = 0; v < original_.size(); ++v)
+    original_[v] = !is_inserted(static_cast<int>(v)) && (surface.inserted.empty() || !surface.inserted[v]);
 }
 
 // A point inside an edge or a face of the surface that was cut goes to a neighbour on the same edge or face: the surface stays the same set of
@@ -46,19 +47,6 @@ bool InsertionMerging::merges_in_place(int h) const {
   for (const int w : q.vertices)
     if (w >= 0 && std::find(p.vertices.begin(), p.vertices.end(), w) == p.vertices.end()) return false;
   return true;
-}
-
-// Within the plane of a face, or of the two beside an edge, triangles that fold over each other have too much area.
-bool InsertionMerging::keeps_area(int h) const {
-  const int v = c_.mesh.from(h);
-  const Vec3& target = c_.points[c_.mesh.to(h)];
-  double before = 0, after = 0;
-  c_.for_star(v, [&](int g, const Complex&, const Complex&) {
-    const Vec3 &p = c_.points[c_.mesh.to(g)], &q = c_.points[c_.mesh.apex(g)];
-    before += (p - c_.points[v]).cross(q - c_.points[v]).norm();
-    after += (p - target).cross(q - target).norm();
-  });
-  return after <= before * (1 + 1e-9);
 }
 
 double InsertionMerging::least_determinant_after(int h) const {
@@ -84,7 +72,7 @@ void InsertionMerging::merge(double least_determinant, double least_shape) {
       do {
         const double l = (c_.points[c_.mesh.to(h)] - c_.points[v]).squaredNorm();
         if (l < shortest && merges_in_place(h) && c_.can_collapse(h) && c_.collapse_keeps_map(h, least_determinant, least_shape) &&
-            (least_shape < 0 || keeps_area(h)))
+            (least_shape < 0 || c_.collapse_keeps_area(h)))
           shortest = l, best = h;
         if (c_.mesh.is_boundary(v)) break;
         h = c_.mesh.ccw(h);

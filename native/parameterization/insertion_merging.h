@@ -27,7 +27,6 @@ class InsertionMerging {
  private:
   bool is_inserted(int v) const { return source_[v].vertices[1] >= 0; }
   bool merges_in_place(int h) const;
-  bool keeps_area(int h) const;
   double least_determinant_after(int h) const;
   void settle(int cone);
   void settle_corner(int corner);

@@ -111,6 +111,8 @@ class MapCutting {
           // Exact: the square's numbers are dyadic, and no digits are lost towards 0.
           out.uv.push_back((uv_[t.corners[i]] - Vec2(square.u, square.v)) / square.width);
           out.positions.push_back(positions_[t.corners[i]]);
+          const auto v = static_cast<std::size_t>(t.corners[i]);
+          out.inserted.push_back(v >= map_.uv.size() || map_.is_inserted(v));
         }
         for (int k = 0; k < 3; ++k)
           source[3 * i + k] = static_cast<float>(t.weights[i][0] * whole[k] + t.weights[i][1] * whole[3 + k] + t.weights[i][2] * whole[6 + k]);

@@ -136,39 +136,16 @@ GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& gr
   for (std::size_t v = 0; v < surface.mesh.points.size(); ++v) surface.source.push_back({{static_cast<int>(v), -1, -1}, {1, 0, 0}});
   for (std::size_t f = 0; f < surface.mesh.faces.size(); ++f) surface.mesh.source_face.push_back(static_cast<int>(f));
   out.faces = surface.mesh.faces;
+  out.inserted.assign(surface.mesh.points.size(), 0);
+  std::size_t face = 0;
   for (const PatchMap& map : maps) {
-    out.source_face.insert(out.source_face.end(), map.source_face.begin(), map.source_face.end());
-    out.source.insert(out.source.end(), map.source.begin(), map.source.end());
+    for (std::size_t t = 0; t < map.triangles.size(); ++t, ++face)
+      for (int i = 0; i < 3; ++i)
+        if (map.is_inserted(map.triangles[t][i])) out.inserted[surface.mesh.faces[face][i]] = 1;
+    out.on.face.insert(out.on.face.end(), map.source_face.begin(), map.source_face.end());
+    out.on.weights.insert(out.on.weights.end(), map.source.begin(), map.source.end());
   }
   return out;
-}
-
-namespace {
-
-// Makes sources given in some faces name what these lie on.
-void compose(std::vector<int>& source_face, std::vector<std::array<float, 9>>& source, const std::vector<int>& on_face,
-             const std::vector<std::array<float, 9>>& on) {
-  for (std::size_t t = 0; t < source_face.size(); ++t) {
-    const int face = source_face[t];
-    const std::array<float, 9>& corner = on[face];
-    std::array<float, 9> traced{};
-    for (int c = 0; c < 3; ++c)
-      for (int i = 0; i < 3; ++i) {
-        double w = 0;
-        for (int k = 0; k < 3; ++k) w += static_cast<double>(source[t][3 * c + k]) * corner[3 * k + i];
-        traced[3 * c + i] = static_cast<float>(w);
-      }
-    source[t] = traced;
-    source_face[t] = on_face[face];
-  }
-}
-
-}  // namespace
-
-void GluedMaps::trace(PatchMap& map) const { compose(map.source_face, map.source, source_face, source); }
-
-void GluedMaps::trace_on(const std::vector<int>& between_face, const std::vector<std::array<float, 9>>& between) {
-  compose(source_face, source, between_face, between);
 }
 
 }  // namespace hybrid_mesh

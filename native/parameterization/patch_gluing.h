@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "parameterization/face_sources.h"
 #include "parameterization/patch_map.h"
 #include "parameterization/patched_surface.h"
 
@@ -23,14 +24,8 @@ MappedSurface glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph
 struct GluedMaps {
   MappedSurface mapped;
   std::vector<std::array<int, 3>> faces;  // that `mapped` names as its source: its own, and maybe further ones
-  // Per such face where it lies on the surface that the maps name: as PatchMap has it.
-  std::vector<int> source_face;
-  std::vector<std::array<float, 9>> source;
-
-  // Makes a map's sources, given in `faces`, name faces of the surface that the glued maps named.
-  void trace(PatchMap& map) const;
-  // Where the maps named faces of something between, makes them name what these lie on; per face of that as PatchMap has it.
-  void trace_on(const std::vector<int>& between_face, const std::vector<std::array<float, 9>>& between);
+  FaceSources on;                         // where such a face lies on the surface that the maps name
+  std::vector<char> inserted;             // per point of `mapped` as it was glued: see PatchMap
 };
 GluedMaps glue_patch_maps(const std::vector<PatchMap>& maps, const QuadGraph& graph);
 

@@ -17,7 +17,9 @@ struct PatchMap {
   std::vector<std::array<int, 3>> triangles;  // #T, counter-clockwise in uv
   std::vector<int> source_face;               // #T: face of the repaired surface that the triangle lies on
   std::vector<std::array<float, 9>> source;   // #T: barycentrics of the three corners in that face, corner by corner
+  std::vector<char> inserted;                 // #V: is it one that cutting the surface has put in, so that it may go? Empty: none is known to be
 
+  bool is_inserted(std::size_t v) const { return !inserted.empty() && inserted[v]; }
   // Gives back the room that was kept for growing.
   void compact() {
     uv.shrink_to_fit();

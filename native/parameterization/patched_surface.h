@@ -38,6 +38,7 @@ void split_inner_edge(TriangleSurface& mesh, std::vector<PointSource>& source, i
 struct PatchedSurface : QuadGraph {
   TriangleSurface mesh;                                // source_face: face of the repaired surface
   std::vector<PointSource> source;                     // per point
+  std::vector<char> inserted;                          // per point: has an earlier cut put it in, see PatchMap? Empty: none has
   std::vector<int> patch;                              // per face
   std::vector<std::array<std::vector<int>, 4>> sides;  // per patch and side: the points along it, both ends included
   std::vector<std::array<char, 4>> sharp;              // per patch and side: does it run along a feature, as all of that curve does? Empty: none does

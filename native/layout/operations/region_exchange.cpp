@@ -37,16 +37,23 @@ std::optional<PlacedRim> place_rim(const std::vector<int>& line, const std::vect
   };
   for (const bool back : {false, true}) {
     const auto on_line = [&](std::size_t first, std::size_t k) { return line[back ? (first + m - k % m) % m : (first + k) % m]; };
+    // Of points that are near one of the loop's the nearest is it: a cut may have put another beside it.
+    const auto is_nearest = [&](std::size_t first, std::size_t k, std::size_t i) {
+      const double own = (points[on_line(first, k)] - loop[i]).norm();
+      return is_at(on_line(first, k), i) && own <= (points[on_line(first, k + 1)] - loop[i]).norm() &&
+             own <= (points[on_line(first, k + m - 1)] - loop[i]).norm();
+    };
     for (std::size_t first = 0; first < m; ++first) {
-      if (!is_at(line[first], 0)) continue;
+      if (!is_nearest(first, 0, 0)) continue;
       PlacedRim rim;
       rim.reversed = back;
       std::size_t i = 0;  // the last point of the loop that was passed
       bool ordered = true;
       for (std::size_t k = 0; k < m && ordered; ++k) {
         const int v = on_line(first, k);
-        if (k > 0 && i + 1 < n && is_at(v, i + 1)) ++i;
-        const double t = is_at(v, i) ? 0 : (points[v] - loop[i]).norm() / (loop[(i + 1) % n] - loop[i]).norm();
+        const bool next = k > 0 && i + 1 < n && is_nearest(first, k, i + 1);
+        i += next;
+        const double t = next || k == 0 ? 0 : (points[v] - loop[i]).norm() / (loop[(i + 1) % n] - loop[i]).norm();
         ordered = t < 1 && (k == 0 || static_cast<double>(i) + t > rim.places.back());
         rim.points.push_back(v);
         rim.places.push_back(static_cast<double>(i) + t);
@@ -85,7 +92,7 @@ class Exchange {
   void take_out() {
     const std::set<int> opening(events_.begin(), events_.end());
     const auto event_of = [&](int f) {
-      const int source = glued_.source_face[part_.mesh.source_face[f]];
+      const int source = glued_.on.face[part_.mesh.source_face[f]];
       const int e = source < static_cast<int>(series_.face_event.size()) ? series_.face_event[source] : -1;
       return opening.count(e) ? e : -1;
     };
@@ -93,12 +100,12 @@ class Exchange {
     for (int f = 0; f < static_cast<int>(part_.mesh.faces.size()); ++f) {
       if (event_of(f) >= 0) continue;
       const int glued_face = part_.mesh.source_face[f];
-      faces_.push_back({part_.mesh.faces[f], glued_.source_face[glued_face], glued_.source[glued_face]});
+      faces_.push_back({part_.mesh.faces[f], glued_.on.face[glued_face], glued_.on.weights[glued_face]});
       for (int h = 3 * f; h < 3 * f + 3; ++h) {
         const int across = part_.mesh.opposite[h] < 0 ? -1 : part_.mesh.opposite[h] / 3;
         const int e = across < 0 ? -1 : event_of(across);
         if (e < 0) continue;
-        const int side = series_.face_side[glued_.source_face[part_.mesh.source_face[across]]];
+        const int side = series_.face_side[glued_.on.face[part_.mesh.source_face[across]]];
         if (!next[{e, side}].insert({part_.mesh.from(h), part_.mesh.to(h)}).second) throw NoMap("what opens touches itself");
       }
     }
@@ -285,8 +292,8 @@ class Exchange {
       out.mesh.faces.push_back(corners);
       out.mesh.source_face.push_back(static_cast<int>(glued_.faces.size()));
       glued_.faces.push_back({out.source[corners[0]].vertices[0], out.source[corners[1]].vertices[0], out.source[corners[2]].vertices[0]});
-      glued_.source_face.push_back(face.source);
-      glued_.source.push_back(face.weights);
+      glued_.on.face.push_back(face.source);
+      glued_.on.weights.push_back(face.weights);
     }
     try {
       connect_half_edges(out.mesh);

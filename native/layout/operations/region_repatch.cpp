@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "layout/drawn/face_filling.h"
+#include "layout/operations/map_relaxation.h"
 #include "layout/operations/region_exchange.h"
 #include "layout/operations/region_outline.h"
 #include "layout/operations/region_uncutting.h"
@@ -21,7 +22,6 @@
 #include "parameterization/global_map.h"
 #include "parameterization/initial_map.h"
 #include "parameterization/patch_energy.h"
-#include "parameterization/patch_extraction.h"
 #include "parameterization/patch_gluing.h"
 
 namespace hybrid_mesh {
@@ -211,25 +211,6 @@ void open_events(const LevelState& state, const std::vector<int>& events, LocalR
   region.in_part.pieces = region.in_level.pieces = pieces_of(surface, region.in_part);
 }
 
-// Smooths the map of a part of the level, and holds its rim where the level goes on, so that the maps around still fit. Returns its energy beyond an
-// isometry's.
-double relax(ChartMesh& charts, const PatchedSurface& part, const std::vector<std::array<bool, 4>>& held, GlobalMapOptions options,
-             const Progress& progress) {
-  for (int q = 0; q < part.patch_count(); ++q)
-    for (int i = 0; i < 4; ++i)
-      if (held[q][i])
-        for (const int v : part.sides[q][i]) charts.kind[v] = ChartMesh::Kind::Pinned;
-  options.corners_move = false;  // ends of the rim are among them
-  double area = 0;
-  for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
-  return (smooth_map_surely(charts, part, options, progress).energy - 1) * area;
-}
-
-// Of lengths in unit size, with which the quads have area 1 on average.
-double scale_of(const LevelState& state, const QuadGraph& quads) {
-  return state.placement.diagonal * std::sqrt(static_cast<double>(quads.patch_count()) / state.area);
-}
-
 MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& repatch, const Progress& progress) {
   const QuadGraph& level = state.quads;
   const FreeLoops loops = loops_of(repatch);
@@ -239,7 +220,7 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
                 "the quads of a region must have a boundary that does not touch itself, and each of its starts must be on a part of it of its own");
   // One ring at least: sides that the new quads share with it follow its map.
   const std::vector<int> quads = with_rings(level, repatch.patches, std::max(1, repatch.buffer_rings));
-  RootTriangles roots;
+  FaceSources roots;
   std::vector<PatchMap> maps = maps_of(state, quads, roots);
   for (PatchMap& map : maps)
     for (Vec3& p : map.positions) p = state.placement.to_unit(p);
@@ -256,13 +237,13 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
   for (PatchSide& start : starts) start.patch = static_cast<int>(std::find(quads.begin(), quads.end(), start.patch) - quads.begin());
   local.in_part = *make_region(part.surface, first, starts, loops);
   RegionSurface surface = uncut_region(surface_of(part.surface, local.in_part), glued);
-  glued.trace_on(roots.source_face, roots.source);
+  roots.trace(glued.on);
   open_events(state, repatch.opens, local, surface, glued);
   surface.mesh.sizes = state.sizes;
 
   MappedEdit out;
   out.opens = repatch.opens;
-  const std::vector<double> energies = patch_energies(part, scale_of(state, level), GlobalMapOptions().theta);
+  const std::vector<double> energies = patch_energies(part, unit_quad_scale(state, level), GlobalMapOptions().theta);
   for (std::size_t k = 0; k < energies.size(); ++k)
     if (repatch.buffer_rings > 0 || k < repatch.patches.size()) out.energy_before += energies[k];
   RegionPattern pattern = repatch.pattern;
@@ -290,22 +271,14 @@ MappedEdit repatch_in_unit_size(const LevelState& state, const RegionRepatch& re
     relaxed.resize(number.size());
     std::iota(relaxed.begin(), relaxed.end(), 0);
   }
-  const PatchedPart smoothed = part_of(part.surface, relaxed);
-  std::vector<std::array<Vec2, 3>> corners;
-  for (const int f : smoothed.face) corners.push_back(part.corners[f]);
-  std::vector<std::array<bool, 4>> held(relaxed.size());
-  for (std::size_t k = 0; k < relaxed.size(); ++k)
-    for (int i = 0; i < 4; ++i) held[k][i] = smoothed.surface.neighbours[k][i].patch < 0 && after.neighbours[number[relaxed[k]]][i].patch >= 0;
-
-  ChartMesh charts(smoothed.surface, corners);
-  charts.scale = scale_of(state, after);  // even ones are what it is relaxed to
-  out.energy_after = relax(charts, smoothed.surface, held, repatch.map, progress.part(0.5, 0.8));
-  std::vector<PatchMap> fresh = extract_patch_maps(charts, smoothed.surface, glued.faces, progress.part(0.8, 1));
+  std::vector<int> numbers;  // of these in the level
+  for (const int k : relaxed) numbers.push_back(number[k]);
+  // Even ones are what it is relaxed to.
+  RelaxedMaps fresh = relaxed_maps(part, relaxed, after, numbers, unit_quad_scale(state, after), glued, repatch.map, progress.part(0.5, 1));
+  out.energy_after = fresh.energy;
   for (std::size_t k = 0; k < relaxed.size(); ++k) {
-    if (const char* defect = find_map_defect(fresh[k]); *defect) throw NoMap(std::string("the map of a quad of the region: ") + defect);
-    glued.trace(fresh[k]);
-    for (Vec3& p : fresh[k].positions) p = state.placement.from_unit(p);
-    out.maps.push_back({number[relaxed[k]], std::move(fresh[k])});
+    for (Vec3& p : fresh.maps[k].positions) p = state.placement.from_unit(p);
+    out.maps.push_back({numbers[k], std::move(fresh.maps[k])});
   }
   return out;
 }

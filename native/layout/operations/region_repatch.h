@@ -37,7 +37,8 @@ struct RegionRepatch {
   RegionPattern pattern;          // where the level's maps have the surface
   std::vector<int> opens;  // events of the level's surface that open: they are inside the region, and the pattern is laid out on what comes then
   int buffer_rings = 1;    // so many rings of quads around are relaxed with the new ones; 0: none
-  GlobalMapOptions map;    // how much is done for a smooth map
+  // How much is done for a smooth map. There are few quads, close to each other: they get a finer coarse mesh than a whole base.
+  GlobalMapOptions map{.vertices_a_quad = 30};
 };
 
 // Lays out a region anew: its part of the surface, cut out along its sides, is cut along those of the new quads, these are mapped, and the map is

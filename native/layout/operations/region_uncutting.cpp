@@ -75,9 +75,9 @@ class Uncutting {
   }
 
  private:
-  int root(int f) const { return glued_.source_face[mesh_.source_face[f]]; }
+  int root(int f) const { return glued_.on.face[mesh_.source_face[f]]; }
   Weights weights(int f, int corner) const {
-    const std::array<float, 9>& w = glued_.source[mesh_.source_face[f]];
+    const std::array<float, 9>& w = glued_.on.weights[mesh_.source_face[f]];
     return {w[3 * corner], w[3 * corner + 1], w[3 * corner + 2]};
   }
   int across(int h) const { return mesh_.opposite[h] < 0 ? -1 : mesh_.opposite[h] / 3; }
@@ -209,14 +209,14 @@ class Uncutting {
           const int f = corners[k] / 3, at = corners[k] % 3, v = mesh_.faces[f][at];
           face[k] = point(v);
           names[k] = part_.source[v].vertices[0];
-          const std::array<float, 9>& whole = glued_.source[mesh_.source_face[f]];
+          const std::array<float, 9>& whole = glued_.on.weights[mesh_.source_face[f]];
           std::copy_n(whole.begin() + 3 * at, 3, source.begin() + 3 * k);
         }
         out.mesh.faces.push_back(face);
         out.mesh.source_face.push_back(static_cast<int>(glued_.faces.size()));
         glued_.faces.push_back(names);
-        glued_.source_face.push_back(root(pieces_[i].front()));
-        glued_.source.push_back(source);
+        glued_.on.face.push_back(root(pieces_[i].front()));
+        glued_.on.weights.push_back(source);
       }
     }
     connect_half_edges(out.mesh);

@@ -38,7 +38,7 @@ double area_of(const TriangleSurface& mesh) {
 struct Uncut {
   RegionSurface before, after;
   GluedMaps glued;
-  RootTriangles roots;
+  FaceSources roots;
 };
 
 Uncut uncut(const LevelState& state, const std::vector<int>& patches) {

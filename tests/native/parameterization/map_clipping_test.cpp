@@ -99,7 +99,7 @@ TEST(MapClipping, GluedMapsTraceTheirSources) {
     own.source_face[t] = first + static_cast<int>(t);
     own.source[t] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   }
-  glued.trace(own);
+  glued.on.trace(own);
   EXPECT_EQ(own.source_face, parts[2].source_face);
   EXPECT_EQ(own.source, parts[2].source);
 }
