@@ -225,6 +225,7 @@ class AdaptiveRefinement {
     result.mesh = result.hierarchy.final_mesh();
     SurfaceFitOptions options = final_fit();
     options.sizes = options_.sizes;
+    options.surface = options_.surface;
     fit_to_surface(result.mesh, result.hierarchy, options, progress);
     return result;
   }

@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "base/limits.h"
 #include "hierarchy/hybrid_mesh.h"
+#include "remesh/mesh_intersections.h"
 #include "surface/distance.h"
 #include "surface/size_field.h"
 
@@ -18,6 +19,7 @@ struct AdaptiveOptions {
   int deepest = limits::most_levels;  // finest level of a leaf
   // Of quads, in the maps' space: where these are to be smaller, errors count more. None: errors count the same everywhere.
   const SizeField* sizes = nullptr;
+  PlacedSurface surface;  // see SurfaceFitOptions
   // Of half a mesh, to be joined with its mirror image along its marked sides: see HalfSurface. Vertices are then those of both.
   std::optional<int> cut_euler;
 };

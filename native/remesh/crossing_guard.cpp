@@ -50,7 +50,7 @@ class Separation {
       : mesh_(mesh), fixed_(fixed), before_(before), guard_(guard) {}
 
   void run(const Progress& progress) {
-    constexpr int sweeps = 4;
+    constexpr int sweeps = 8;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       std::set<int> vertices;
       for (const auto& [faces, place] : crossing_faces(mesh_, progress))
@@ -105,15 +105,15 @@ class Separation {
     const Vec3 start = mesh_.points[v];
     const double enough = std::min(worst_quad(v), unfolded);
     Vec3 best = start;
-    std::pair<int, double> least{crossings, 0};  // and how far it goes
+    double least = std::numeric_limits<double>::infinity();
     for (const Vec3& place : places(v)) {
+      const double way = (place - start).norm();
+      if (way >= least) continue;
       mesh_.points[v] = place;
-      if (worst_quad(v) < enough) continue;
-      const std::pair<int, double> found{guard_.crossings(v, place), (place - start).norm()};
-      if (found.first < crossings && found < least) least = found, best = place;
+      if (worst_quad(v) >= enough && guard_.crossings(v, place) < crossings) least = way, best = place;
     }
     mesh_.points[v] = best;
-    if (least.first == crossings) return false;
+    if (best == start) return false;
     guard_.moved(v);
     return true;
   }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/tolerances.h"
-#include "remesh/crossing_faces.h"
 #include "surface/closest_point.h"
 #include "surface/self_intersections.h"
 #include "surface/triangle_intersection.h"
@@ -85,21 +84,24 @@ std::vector<char> boxes_met(const std::vector<Box>& boxes, const std::vector<std
 
 }  // namespace
 
-MeshIntersections mesh_intersections(const QuadMesh& mesh, const TriangleSurface& surface, const Placement& placement, const Progress& progress) {
-  const CrossingFaces places = crossing_faces(mesh, progress.part(0, 0.7));
+std::vector<char> crosses_in_surface(const QuadMesh& mesh, const CrossingFaces& pairs, const PlacedSurface& surface, const Progress& progress) {
+  if (pairs.empty()) return {};
+  std::vector<Box> boxes;
+  for (const auto& [faces, place] : pairs) boxes.push_back(box_of(mesh, faces, surface.placement));
+  return boxes_met(boxes, common_near(*surface.surface, boxes, progress), progress);
+}
+
+MeshIntersections mesh_intersections(const QuadMesh& mesh, const PlacedSurface& surface, const Progress& progress) {
+  const CrossingFaces pairs = crossing_faces(mesh, progress.part(0, 0.7));
+  const std::vector<char> in_surface = crosses_in_surface(mesh, pairs, surface, progress.part(0.7, 1));
   MeshIntersections found;
-  if (!places.empty()) {
-    std::vector<Box> boxes;
-    for (const auto& [faces, place] : places) boxes.push_back(box_of(mesh, faces, placement));
-    const std::vector<char> of_input = boxes_met(boxes, common_near(surface, boxes, progress.part(0.7, 1)), progress);
-    std::size_t at = 0;
-    for (const auto& [faces, place] : places) {
-      if (of_input[at++]) {
-        ++found.pairs_of_input;
-      } else {
-        ++found.pairs;
-        if (!found.where) found.where = place;
-      }
+  std::size_t at = 0;
+  for (const auto& [faces, place] : pairs) {
+    if (in_surface[at++]) {
+      ++found.pairs_of_input;
+    } else {
+      ++found.pairs;
+      if (!found.where) found.where = place;
     }
   }
   progress(1);

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "base/context.h"
 #include "hierarchy/hybrid_mesh.h"
+#include "remesh/crossing_faces.h"
 #include "surface/placement.h"
 #include "surface/triangle_surface.h"
 
@@ -18,8 +20,16 @@ struct MeshIntersections {
   std::optional<Vec3> where;        // of the first of `pairs`
 };
 
-// Faces are split into triangles by triangulate(). The surface is looked at only where the mesh runs through itself: it does so there as well if it
-// does inside the box around the two faces. `placement` brings it to where the mesh is.
-MeshIntersections mesh_intersections(const QuadMesh& mesh, const TriangleSurface& surface, const Placement& placement, const Progress& progress);
+// The surface that a mesh was made of, and what brings it to where the mesh is.
+struct PlacedSurface {
+  const TriangleSurface* surface = nullptr;
+  Placement placement;
+};
+
+// Of each pair of a mesh's faces that run through one another, in order: does the surface run through itself there as well, inside the box around the
+// two faces? It is looked at only there.
+std::vector<char> crosses_in_surface(const QuadMesh& mesh, const CrossingFaces& pairs, const PlacedSurface& surface, const Progress& progress);
+
+MeshIntersections mesh_intersections(const QuadMesh& mesh, const PlacedSurface& surface, const Progress& progress);
 
 }  // namespace hybrid_mesh

@@ -86,8 +86,22 @@ class SampleFit {
     // What is left, and what going back has folded, vertex by vertex.
     CrossingGuard guard(mesh_);
     unfold(mesh_, &guard);
-    separate_faces(mesh_, held_, on_surface, guard, progress_);
+    separate_faces(mesh_, held_where_surface_crosses(), on_surface, guard, progress_);
     unfold(mesh_, &guard);
+  }
+
+  // What is held, and the faces that run through one another as the surface does: there the mesh is right.
+  std::vector<char> held_where_surface_crosses() const {
+    std::vector<char> held = held_;
+    if (!options_.surface.surface) return held;
+    const CrossingFaces pairs = crossing_faces(mesh_, progress_);
+    const std::vector<char> in_surface = crosses_in_surface(mesh_, pairs, options_.surface, progress_);
+    std::size_t at = 0;
+    for (const auto& [faces, place] : pairs)
+      if (in_surface[at++])
+        for (const int f : {faces.first, faces.second})
+          for (std::int64_t i = mesh_.offsets[f]; i < mesh_.offsets[f + 1]; ++i) held[mesh_.indices[i]] = 1;
+    return held;
   }
 
   // The sum over the samples, with their weights.

@@ -3,6 +3,7 @@
 
 #include "hierarchy/hybrid_mesh.h"
 #include "remesh/fit.h"
+#include "remesh/mesh_intersections.h"
 #include "surface/size_field.h"
 
 namespace hybrid_mesh {
@@ -13,6 +14,7 @@ struct SurfaceFitOptions {
   int finest = 64;                   // leaves finer than this level count as one of it, as in a mesh of that level
   const SizeField* sizes = nullptr;  // of the quads, in the maps' space; none: those of a level are even
   bool apart = false;                // faces that run through one another are taken apart, and fitted once more from there
+  PlacedSurface surface;             // ... but where this one runs through itself as well; none: it does nowhere
   double unfold = 1.0;               // how far folded quads' vertices may go at the end, in lengths of their shortest edge
 };
 

@@ -134,7 +134,7 @@ Finished measured(const RemeshTask& task, const Candidate& candidate, const Prog
           quad_quality(mesh),
           mean_width(mesh),
           distance,
-          mesh_intersections(mesh, source.repaired, source.placement, progress.part(0.5, 1))};
+          mesh_intersections(mesh, {&source.repaired, source.placement}, progress.part(0.5, 1))};
 }
 
 std::vector<Reason> reasons_against(const Finished& finished) {

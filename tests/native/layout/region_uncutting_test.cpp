@@ -77,8 +77,8 @@ TEST(RegionUncutting, OldSidesAreGoneAndTheSurfaceStays) {
     std::set<int> rim;
     for (const auto& side : made.after.sides) rim.insert(side.begin(), side.end());
     for (std::size_t f = 0; f < made.after.mesh.faces.size(); ++f) {
-      const int named = made.after.mesh.source_face[f], root = made.glued.source_face[named];
-      const std::array<float, 9>& w = made.glued.source[named];
+      const int named = made.after.mesh.source_face[f], root = made.glued.on.face[named];
+      const std::array<float, 9>& w = made.glued.on.weights[named];
       const int first = static_cast<int>(state.maps[0].map->triangles.size());
       const PatchMap& map = *state.maps[root < first ? 0 : state.quads.patch_count() - 1].map;
       const std::array<int, 3>& corners = map.triangles[root < first ? root : root - first];

@@ -32,7 +32,8 @@ PolygonSoup crossing_sheets(double shift = 0) {
 
 MeshIntersections found(const QuadMesh& mesh, const PolygonSoup& input, const Placement& placement = {}) {
   Context context;
-  const MeshIntersections m = mesh_intersections(mesh, repaired(input), placement, Progress(context));
+  const TriangleSurface surface = repaired(input);
+  const MeshIntersections m = mesh_intersections(mesh, {&surface, placement}, Progress(context));
   EXPECT_EQ(context.progress(), 1);
   return m;
 }
