@@ -36,15 +36,15 @@ constexpr std::size_t kWorse = 4;
 // What part of their way from `before` vertices go, tried out step by step.
 class TakingBack {
  public:
-  TakingBack(QuadMesh& mesh, const std::vector<Vec3>& before, const Progress& progress)
-      : mesh_(mesh), before_(before), after_(mesh.points), progress_(progress), moved_(before.size(), 0) {}
+  TakingBack(QuadMesh& mesh, const std::vector<Vec3>& before, const CrossingFilter& filter, const Progress& progress)
+      : mesh_(mesh), before_(before), after_(mesh.points), filter_(filter), progress_(progress), moved_(before.size(), 0) {}
 
   TakenBack run() {
     // The first ones take the least that is needed; at last vertices are where they were, until what crosses there crossed before.
     constexpr std::array<double, 6> shorter{0.6, 0.6, 0.6, 0.6, 0.5, 0.5};
     constexpr std::size_t most_steps = 16;
     std::vector<double> part(before_.size(), 1);
-    CrossingFaces pairs = crossing_faces(mesh_, progress_);
+    CrossingFaces pairs = filtered(crossing_faces(mesh_, progress_));
     if (pairs.empty()) return {};
     const auto keep = [&] {
       steps_.push_back({part, pairs, inverted_quads(mesh_)});
@@ -130,7 +130,12 @@ class TakingBack {
     std::vector<int> face_of;
     for (std::size_t t = 0; t < wanted.size(); ++t)
       if (wanted[t]) triangles.push_back(all.triangles[t]), face_of.push_back(static_cast<int>(all.polygon[t]));
-    return crossing(mesh_.points, triangles, face_of, progress_);
+    return filtered(crossing(mesh_.points, triangles, face_of, progress_));
+  }
+
+  CrossingFaces filtered(CrossingFaces pairs) const {
+    if (filter_) filter_(mesh_, pairs);
+    return pairs;
   }
 
   // Vertices that have moved belong together if a face, or two that cross in some step, have them.
@@ -171,6 +176,7 @@ class TakingBack {
   QuadMesh& mesh_;
   const std::vector<Vec3>& before_;
   const std::vector<Vec3> after_;
+  const CrossingFilter& filter_;
   const Progress& progress_;
   std::vector<char> moved_;
   std::vector<Step> steps_;
@@ -183,8 +189,8 @@ CrossingFaces crossing_faces(const QuadMesh& mesh, const Progress& progress) {
   return crossing(mesh.points, t.triangles, {t.polygon.begin(), t.polygon.end()}, progress);
 }
 
-TakenBack take_back_crossings(QuadMesh& mesh, const std::vector<Vec3>& before, const Progress& progress) {
-  return TakingBack(mesh, before, progress).run();
+TakenBack take_back_crossings(QuadMesh& mesh, const std::vector<Vec3>& before, const CrossingFilter& filter, const Progress& progress) {
+  return TakingBack(mesh, before, filter, progress).run();
 }
 
 }  // namespace hybrid_mesh

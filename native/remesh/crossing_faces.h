@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -16,12 +17,15 @@ namespace hybrid_mesh {
 using CrossingFaces = std::map<std::pair<int, int>, Vec3>;
 CrossingFaces crossing_faces(const QuadMesh& mesh, const Progress& progress);
 
+// Takes out of a mesh's crossing faces those that are right as they are.
+using CrossingFilter = std::function<void(const QuadMesh&, CrossingFaces&)>;
+
 // Where faces run through one another, vertices around them go back part of their way from `before`: in each knot of such faces as far as leaves the
-// fewest that cross or are inverted.
+// fewest that cross or are inverted. `filter`: none for all of them.
 struct TakenBack {
   bool any = false;      // faces crossed; else nothing is changed
   std::size_t left = 0;  // what still does, and what is inverted, by how bad it is
 };
-TakenBack take_back_crossings(QuadMesh& mesh, const std::vector<Vec3>& before, const Progress& progress);
+TakenBack take_back_crossings(QuadMesh& mesh, const std::vector<Vec3>& before, const CrossingFilter& filter, const Progress& progress);
 
 }  // namespace hybrid_mesh

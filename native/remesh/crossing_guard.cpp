@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "remesh/crossing_faces.h"
 #include "remesh/quality.h"
 #include "surface/triangle_intersection.h"
 
@@ -46,14 +45,16 @@ PolygonSoup some_faces(const QuadMesh& mesh, const std::vector<int>& faces, int 
 // Moves single vertices out of faces that run through others.
 class Separation {
  public:
-  Separation(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, CrossingGuard& guard)
-      : mesh_(mesh), fixed_(fixed), before_(before), guard_(guard) {}
+  Separation(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, const CrossingFilter& filter, CrossingGuard& guard)
+      : mesh_(mesh), start_(mesh.points), fixed_(fixed), before_(before), filter_(filter), guard_(guard) {}
 
   void run(const Progress& progress) {
     constexpr int sweeps = 8;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
+      CrossingFaces pairs = crossing_faces(mesh_, progress);
+      if (filter_) filter_(mesh_, pairs);
       std::set<int> vertices;
-      for (const auto& [faces, place] : crossing_faces(mesh_, progress))
+      for (const auto& [faces, place] : pairs)
         for (const int f : {faces.first, faces.second}) for_corners(mesh_, f, [&](int v) { vertices.insert(v); });
       bool any = false;
       for (const int v : vertices) {
@@ -84,9 +85,12 @@ class Separation {
       }
     }
     std::vector<Vec3> out;
-    for (const double part : {0.25, 0.5, 1.0})
-      for (const Vec3& end : {Vec3(sum / count), before_[v]}) out.push_back(p + part * (end - p));
-    for (const double part : {0.1, -0.1, 0.3, -0.3, 0.6, -0.6}) out.push_back(p + part * shortest * normal.normalized());
+    for (const double part : {0.25, 0.5, 1.0}) out.push_back(p + part * (sum / count - p));
+    for (const double part : {0.02, -0.02, 0.06, -0.06, 0.15, -0.15}) out.push_back(p + part * shortest * normal.normalized());
+    // What is not on its way to the surface stays close to it.
+    const Vec3& home = start_[v];
+    std::erase_if(out, [&](const Vec3& place) { return (place - home).norm() > kReach * shortest; });
+    for (const double part : {0.25, 0.5, 1.0}) out.push_back(p + part * (before_[v] - p));
     return out;
   }
 
@@ -118,9 +122,13 @@ class Separation {
     return true;
   }
 
+  static constexpr double kReach = 0.2;  // of the shortest edge at a vertex
+
   QuadMesh& mesh_;
+  const std::vector<Vec3> start_;
   const std::vector<char>& fixed_;
   const std::vector<Vec3>& before_;
+  const CrossingFilter& filter_;
   CrossingGuard& guard_;
 };
 
@@ -181,8 +189,9 @@ std::vector<int> CrossingGuard::faces_in_box(const Vec3& low, const Vec3& high) 
   return faces;
 }
 
-void separate_faces(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, CrossingGuard& guard, const Progress& progress) {
-  Separation(mesh, fixed, before, guard).run(progress);
+void separate_faces(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, const CrossingFilter& filter,
+                    CrossingGuard& guard, const Progress& progress) {
+  Separation(mesh, fixed, before, filter, guard).run(progress);
 }
 
 }  // namespace hybrid_mesh

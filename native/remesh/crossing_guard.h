@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hierarchy/hybrid_mesh.h"
+#include "remesh/crossing_faces.h"
 #include "surface/closest_point.h"
 #include "surface/triangulation.h"
 
@@ -35,7 +36,8 @@ class CrossingGuard {
 };
 
 // Moves vertices of faces that run through one another, one by one, each to where fewer pairs at it do: of a few places nearby and on its way from
-// `before` the nearest with the least. No quad is folded by that. Vertices with `fixed` set stay.
-void separate_faces(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, CrossingGuard& guard, const Progress& progress);
+// `before` the nearest where they do. No quad is folded by that. Vertices with `fixed` set stay. `filter`: none for all of them.
+void separate_faces(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, const CrossingFilter& filter,
+                    CrossingGuard& guard, const Progress& progress);
 
 }  // namespace hybrid_mesh

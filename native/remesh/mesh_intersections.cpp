@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/tolerances.h"
-#include "surface/closest_point.h"
 #include "surface/self_intersections.h"
 #include "surface/triangle_intersection.h"
 
@@ -41,8 +40,8 @@ Box box_of(const QuadMesh& mesh, const std::pair<int, int>& faces, const Placeme
 }
 
 // What pairs of faces of a surface have in common, of the faces that some boxes meet.
-std::vector<std::vector<Vec3>> common_near(const TriangleSurface& surface, const std::vector<Box>& boxes, const Progress& progress) {
-  const SurfaceDistanceQuery query(surface, progress);
+std::vector<std::vector<Vec3>> common_near(const TriangleSurface& surface, const SurfaceDistanceQuery& query, const std::vector<Box>& boxes,
+                                           const Progress& progress) {
   std::vector<int> near, in_box;
   for (const Box& box : boxes) {
     progress.check();
@@ -84,16 +83,18 @@ std::vector<char> boxes_met(const std::vector<Box>& boxes, const std::vector<std
 
 }  // namespace
 
-std::vector<char> crosses_in_surface(const QuadMesh& mesh, const CrossingFaces& pairs, const PlacedSurface& surface, const Progress& progress) {
-  if (pairs.empty()) return {};
+SurfaceCrossings::SurfaceCrossings(const PlacedSurface& surface, const Progress& progress) : surface_(surface), query_(*surface.surface, progress) {}
+
+std::vector<char> SurfaceCrossings::at(const QuadMesh& mesh, const CrossingFaces& pairs, const Progress& progress) const {
   std::vector<Box> boxes;
-  for (const auto& [faces, place] : pairs) boxes.push_back(box_of(mesh, faces, surface.placement));
-  return boxes_met(boxes, common_near(*surface.surface, boxes, progress), progress);
+  for (const auto& [faces, place] : pairs) boxes.push_back(box_of(mesh, faces, surface_.placement));
+  return boxes_met(boxes, common_near(*surface_.surface, query_, boxes, progress), progress);
 }
 
 MeshIntersections mesh_intersections(const QuadMesh& mesh, const PlacedSurface& surface, const Progress& progress) {
   const CrossingFaces pairs = crossing_faces(mesh, progress.part(0, 0.7));
-  const std::vector<char> in_surface = crosses_in_surface(mesh, pairs, surface, progress.part(0.7, 1));
+  std::vector<char> in_surface;
+  if (!pairs.empty()) in_surface = SurfaceCrossings(surface, progress.part(0.7, 0.8)).at(mesh, pairs, progress.part(0.8, 1));
   MeshIntersections found;
   std::size_t at = 0;
   for (const auto& [faces, place] : pairs) {

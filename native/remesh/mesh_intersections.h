@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "remesh/crossing_faces.h"
+#include "surface/closest_point.h"
 #include "surface/placement.h"
 #include "surface/triangle_surface.h"
 
@@ -26,9 +27,18 @@ struct PlacedSurface {
   Placement placement;
 };
 
-// Of each pair of a mesh's faces that run through one another, in order: does the surface run through itself there as well, inside the box around the
-// two faces? It is looked at only there.
-std::vector<char> crosses_in_surface(const QuadMesh& mesh, const CrossingFaces& pairs, const PlacedSurface& surface, const Progress& progress);
+// Where a surface runs through itself. It is looked at only near pairs of faces of a mesh that do.
+class SurfaceCrossings {
+ public:
+  SurfaceCrossings(const PlacedSurface& surface, const Progress& progress);
+
+  // Of each pair, in order: does the surface run through itself there as well, inside the box around the two faces?
+  std::vector<char> at(const QuadMesh& mesh, const CrossingFaces& pairs, const Progress& progress) const;
+
+ private:
+  PlacedSurface surface_;
+  SurfaceDistanceQuery query_;
+};
 
 MeshIntersections mesh_intersections(const QuadMesh& mesh, const PlacedSurface& surface, const Progress& progress);
 

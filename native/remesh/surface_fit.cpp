@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "remesh/angle_relaxation.h"
@@ -73,35 +74,31 @@ class SampleFit {
 
   // A fit may push one sheet of a thin part, or one side of a fold, through the other; with its vertices on the surface the mesh seldom does that.
   void take_apart(const std::vector<Vec3>& on_surface) {
-    const TakenBack first = take_back_crossings(mesh_, on_surface, progress_);
+    const CrossingFilter wrong = [&](const QuadMesh& mesh, CrossingFaces& pairs) { leave_out_those_of_surface(mesh, pairs); };
+    const TakenBack first = take_back_crossings(mesh_, on_surface, wrong, progress_);
     if (!first.any) return;
     const double before = squared_distance(mesh_);
     QuadMesh again = mesh_;
     for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].face = first_face_[i];  // they may have walked to the other sheet
     fit(again, 1);
     unfold(again);
-    const TakenBack second = take_back_crossings(again, mesh_.points, progress_);
+    const TakenBack second = take_back_crossings(again, mesh_.points, wrong, progress_);
     const double after = squared_distance(again);
     if (second.left <= first.left && after <= before) mesh_ = std::move(again);
     // What is left, and what going back has folded, vertex by vertex.
     CrossingGuard guard(mesh_);
     unfold(mesh_, &guard);
-    separate_faces(mesh_, held_where_surface_crosses(), on_surface, guard, progress_);
+    separate_faces(mesh_, held_, on_surface, wrong, guard, progress_);
     unfold(mesh_, &guard);
   }
 
-  // What is held, and the faces that run through one another as the surface does: there the mesh is right.
-  std::vector<char> held_where_surface_crosses() const {
-    std::vector<char> held = held_;
-    if (!options_.surface.surface) return held;
-    const CrossingFaces pairs = crossing_faces(mesh_, progress_);
-    const std::vector<char> in_surface = crosses_in_surface(mesh_, pairs, options_.surface, progress_);
+  // Takes out pairs that run through one another as the surface does: there the mesh is right.
+  void leave_out_those_of_surface(const QuadMesh& mesh, CrossingFaces& pairs) {
+    if (pairs.empty() || !options_.surface.surface) return;
+    if (!surface_crossings_) surface_crossings_.emplace(options_.surface, progress_);
+    const std::vector<char> in_surface = surface_crossings_->at(mesh, pairs, progress_);
     std::size_t at = 0;
-    for (const auto& [faces, place] : pairs)
-      if (in_surface[at++])
-        for (const int f : {faces.first, faces.second})
-          for (std::int64_t i = mesh_.offsets[f]; i < mesh_.offsets[f + 1]; ++i) held[mesh_.indices[i]] = 1;
-    return held;
+    std::erase_if(pairs, [&](const auto&) { return in_surface[at++] != 0; });
   }
 
   // The sum over the samples, with their weights.
@@ -119,6 +116,7 @@ class SampleFit {
   const std::vector<char> held_;
   const Progress& progress_;
   std::vector<int> first_face_;  // of every sample
+  std::optional<SurfaceCrossings> surface_crossings_;
 };
 
 }  // namespace

@@ -41,11 +41,11 @@ def crumpled():
     return points * (1 + 0.5 * bumps)[:, None], offsets, indices
 
 
-def shell():
-    """A hollow ball whose wall is much thinner than its quads bend."""
+def shell(wall):
+    """A hollow ball of radius 1."""
     points, _, indices = sphere(24)
     faces = indices.reshape(-1, 3)
-    return mesh_of(np.concatenate([points, 0.99 * points]), [*faces, *(faces[:, ::-1] + len(points))])
+    return mesh_of(np.concatenate([points, (1 - wall) * points]), [*faces, *(faces[:, ::-1] + len(points))])
 
 
 class Outcome:
@@ -127,13 +127,20 @@ def test_inverted_quads(tmp_path):
 
 
 def test_walls_that_run_through_one_another(tmp_path):
-    outcome = Outcome(tmp_path, shell(), "--vertices", 500)
+    """Where the wall is far thinner than its quads bend."""
+    outcome = Outcome(tmp_path, shell(0.0001), "--vertices", 1500)
     check_poor(outcome)
     assert set(outcome.reasons) == {"self_intersections"}
     reason = outcome.reasons["self_intersections"]
     count = outcome.report["final"]["self_intersections"]
     assert reason["text"].startswith(f"{count} pairs of faces") and 0.95 < np.linalg.norm(reason["where"]) < 1.01
     assert outcome.row()["self_intersections"] == str(count)
+
+
+def test_thin_walls_are_kept_apart(tmp_path):
+    """Quads that bend by more than half of the wall's width, and would cross it in places."""
+    outcome = Outcome(tmp_path, shell(0.005), "--vertices", 1000)
+    assert outcome.report["verdict"]["result"] == "good" and outcome.report["final"]["self_intersections"] == 0
 
 
 def test_vertices_that_a_least_base_leaves(tmp_path):

@@ -17,7 +17,7 @@ using testing::two_sheets;
 
 TakenBack taken_back(QuadMesh& mesh, const std::vector<Vec3>& before) {
   Context context;
-  return take_back_crossings(mesh, before, Progress(context));
+  return take_back_crossings(mesh, before, {}, Progress(context));
 }
 
 std::size_t crossing(const QuadMesh& mesh) {

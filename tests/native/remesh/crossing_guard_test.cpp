@@ -59,12 +59,28 @@ TEST(CrossingGuard, FacesArePartedWithoutFoldingAny) {
   const std::vector<Vec3> after = mesh.points;
   CrossingGuard guard(mesh);
   Context context;
-  separate_faces(mesh, std::vector<char>(mesh.points.size(), 0), before, guard, Progress(context));
+  separate_faces(mesh, std::vector<char>(mesh.points.size(), 0), before, {}, guard, Progress(context));
   EXPECT_EQ(crossing(mesh), 0U);
   EXPECT_TRUE(inverted_quads(mesh).empty());
   // What does not take part stays where it is.
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if ((after[v] - after[kCentre]).head<2>().norm() > 6) EXPECT_EQ(mesh.points[v], after[v]);
+    if ((after[v] - after[kCentre]).head<2>().norm() > 6) {
+      EXPECT_EQ(mesh.points[v], after[v]);
+    }
+}
+
+TEST(CrossingGuard, WhatIsRightAsItIsStays) {
+  QuadMesh mesh = two_sheets(1, 0);
+  const std::vector<Vec3> before = mesh.points;
+  mesh.points[kCentre].z() = 1.4;
+  const std::vector<Vec3> after = mesh.points;
+  CrossingGuard guard(mesh);
+  Context context;
+  const CrossingFilter all_right = [](const QuadMesh&, CrossingFaces& pairs) { pairs.clear(); };
+  separate_faces(mesh, std::vector<char>(mesh.points.size(), 0), before, all_right, guard, Progress(context));
+  EXPECT_EQ(mesh.points, after);
+  EXPECT_FALSE(take_back_crossings(mesh, before, all_right, Progress(context)).any);
+  EXPECT_EQ(mesh.points, after);
 }
 
 TEST(CrossingGuard, FixedVerticesStay) {
@@ -74,7 +90,7 @@ TEST(CrossingGuard, FixedVerticesStay) {
   const std::vector<Vec3> after = mesh.points;
   CrossingGuard guard(mesh);
   Context context;
-  separate_faces(mesh, std::vector<char>(mesh.points.size(), 1), before, guard, Progress(context));
+  separate_faces(mesh, std::vector<char>(mesh.points.size(), 1), before, {}, guard, Progress(context));
   EXPECT_EQ(mesh.points, after);
 }
 
