@@ -67,6 +67,11 @@ struct QuadMesh {
 
   std::size_t face_count() const { return offsets.size() - 1; }
   std::size_t vertex_count() const { return vertex.size(); }
+  // Calls body(vertex) for the corners of a face, in order.
+  template <class Body>
+  void for_corners(std::size_t face, const Body& body) const {
+    for (std::int64_t i = offsets[face]; i < offsets[face + 1]; ++i) body(indices[i]);
+  }
 };
 
 PolygonSoup to_soup(const QuadMesh& mesh);

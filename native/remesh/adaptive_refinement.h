@@ -7,8 +7,8 @@
 #include "base/context.h"
 #include "base/limits.h"
 #include "hierarchy/hybrid_mesh.h"
-#include "remesh/mesh_intersections.h"
 #include "surface/distance.h"
+#include "surface/placement.h"
 #include "surface/size_field.h"
 
 namespace hybrid_mesh {

@@ -17,8 +17,8 @@ struct AngleRelaxationOptions {
 };
 
 // Moves vertices along the surface, in the tangent plane of the mesh, so that the corners of its quads come nearer to right angles; lengths are free.
-// Vertices with `fixed` set stay. A fit should follow, which brings the vertices back onto the surface. `guard`: that lets no
-// more faces run through others.
+// Vertices with `fixed` set stay. A fit should follow, which brings the vertices back onto the surface. `guard`: if there is
+// one, no vertex goes where it does not allow it.
 void relax_angles(QuadMesh& mesh, const std::vector<char>& fixed, const AngleRelaxationOptions& options, const Progress& progress,
                   CrossingGuard* guard = nullptr);
 

@@ -81,11 +81,6 @@ class TakingBack {
 
   static std::size_t badness(const Step& step) { return kWorse * step.pairs.size() + step.inverted.size(); }
 
-  template <class Body>
-  void for_vertices_of(std::size_t f, const Body& body) const {
-    for (std::int64_t i = mesh_.offsets[f]; i < mesh_.offsets[f + 1]; ++i) body(mesh_.indices[i]);
-  }
-
   void place(const std::vector<double>& part) {
     for (std::size_t v = 0; v < part.size(); ++v) mesh_.points[v] = part[v] == 1 ? after_[v] : Vec3(before_[v] + part[v] * (after_[v] - before_[v]));
   }
@@ -94,11 +89,11 @@ class TakingBack {
   std::vector<int> around(const CrossingFaces& pairs) const {
     std::vector<char> on(before_.size(), 0), near(before_.size(), 0);
     for (const auto& [faces, place] : pairs)
-      for (const int f : {faces.first, faces.second}) for_vertices_of(f, [&](int v) { on[v] = 1; });
+      for (const int f : {faces.first, faces.second}) mesh_.for_corners(f, [&](int v) { on[v] = 1; });
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
       bool touches = false;
-      for_vertices_of(f, [&](int v) { touches |= on[v] != 0; });
-      if (touches) for_vertices_of(f, [&](int v) { near[v] = 1; });
+      mesh_.for_corners(f, [&](int v) { touches |= on[v] != 0; });
+      if (touches) mesh_.for_corners(f, [&](int v) { near[v] = 1; });
     }
     std::vector<int> vertices;
     for (std::size_t v = 0; v < near.size(); ++v)
@@ -108,7 +103,7 @@ class TakingBack {
 
   int moved_vertex(int f) const {
     int moved = -1;
-    for_vertices_of(f, [&](int v) { moved = moved_[v] ? v : moved; });
+    mesh_.for_corners(f, [&](int v) { moved = moved_[v] ? v : moved; });
     return moved;
   }
 
@@ -144,7 +139,7 @@ class TakingBack {
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
       const int moved = moved_vertex(static_cast<int>(f));
       if (moved >= 0)
-        for_vertices_of(f, [&](int v) {
+        mesh_.for_corners(f, [&](int v) {
           if (moved_[v]) sets.join(moved, v);
         });
     }

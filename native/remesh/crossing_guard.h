@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "hierarchy/hybrid_mesh.h"
-#include "remesh/crossing_faces.h"
 #include "surface/closest_point.h"
 #include "surface/triangulation.h"
 
@@ -25,7 +25,7 @@ class CrossingGuard {
   const std::vector<int>& faces_at(int v) const { return faces_at_[v]; }
 
  private:
-  std::vector<int> faces_in_box(const Vec3& low, const Vec3& high) const;
+  std::vector<int> faces_in_box(const Eigen::AlignedBox3d& box) const;
 
   const QuadMesh& mesh_;
   std::vector<std::vector<int>> faces_at_;  // per vertex
@@ -34,10 +34,5 @@ class CrossingGuard {
   std::vector<char> has_moved_;             // per face
   std::vector<int> moved_faces_;
 };
-
-// Moves vertices of faces that run through one another, one by one, each to where fewer pairs at it do: of a few places nearby and on its way from
-// `before` the nearest where they do. No quad is folded by that. Vertices with `fixed` set stay. `filter`: none for all of them.
-void separate_faces(QuadMesh& mesh, const std::vector<char>& fixed, const std::vector<Vec3>& before, const CrossingFilter& filter,
-                    CrossingGuard& guard, const Progress& progress);
 
 }  // namespace hybrid_mesh

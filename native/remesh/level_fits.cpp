@@ -60,9 +60,9 @@ class ClosedSurfaces {
   std::vector<std::shared_ptr<const DistanceReference>> at_level_;
 };
 
-SurfaceFitOptions of_task(SurfaceFitOptions options, const RemeshTask& task) {
+SurfaceFitOptions for_task(SurfaceFitOptions options, const RemeshTask& task) {
   options.sizes = task.sizes().get();
-  options.surface = {&task.source.repaired, task.source.placement};
+  options.surface = task.source.placed();
   return options;
 }
 
@@ -94,7 +94,7 @@ void fit_uniform(const RemeshTask& task, Candidate& c, int level) {
   task.watch.start("fit");
   c.hierarchy.refine_uniform(std::max(level, c.finest));
   c.final_mesh = c.hierarchy.level_mesh(level);
-  fit_to_surface(c.final_mesh, c.hierarchy, of_task(level_fit(true, level), task), task.progress.part(0.6, 0.8));
+  fit_to_surface(c.final_mesh, c.hierarchy, for_task(level_fit(true, level), task), task.progress.part(0.6, 0.8));
 }
 
 void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
@@ -105,7 +105,7 @@ void fit_adaptive(const RemeshTask& task, Candidate& c, std::int64_t vertices) {
   adaptive.vertices = task.options.error > 0 && task.options.vertices == 0 ? 0 : vertices;
   adaptive.error = task.options.error;
   adaptive.sizes = task.sizes().get();
-  adaptive.surface = {&task.source.repaired, task.source.placement};
+  adaptive.surface = task.source.placed();
   if (task.source.half) adaptive.cut_euler = task.source.half->cut_euler;
   if (task.options.levels >= 0) adaptive.deepest = task.options.levels;
   c.final_mesh = refine_adaptively(c.hierarchy, *task.source.reference, adaptive, task.progress.part(0.55, 0.8));
@@ -139,7 +139,7 @@ void finish_levels(const RemeshTask& task, Candidate& c) {
     QuadMesh& mesh = c.level_meshes[j];
     mesh = last ? c.final_mesh : c.hierarchy.level_mesh(j);
     if (!last) {
-      SurfaceFitOptions options = of_task(level_fit(false, j), task);
+      SurfaceFitOptions options = for_task(level_fit(false, j), task);
       // A level that is nearly the final mesh begins with that and has little left to do.
       if (fitted.place(mesh)) options.turns = 0;
       fit_to_surface(mesh, c.hierarchy, options, part);

@@ -10,7 +10,6 @@
 #include "remesh/crossing_faces.h"
 #include "surface/closest_point.h"
 #include "surface/placement.h"
-#include "surface/triangle_surface.h"
 
 namespace hybrid_mesh {
 
@@ -19,12 +18,6 @@ struct MeshIntersections {
   std::int64_t pairs = 0;           // where the surface that it was made of does not
   std::int64_t pairs_of_input = 0;  // where it does as well
   std::optional<Vec3> where;        // of the first of `pairs`
-};
-
-// The surface that a mesh was made of, and what brings it to where the mesh is.
-struct PlacedSurface {
-  const TriangleSurface* surface = nullptr;
-  Placement placement;
 };
 
 // Where a surface runs through itself. It is looked at only near pairs of faces of a mesh that do.
@@ -40,6 +33,7 @@ class SurfaceCrossings {
   SurfaceDistanceQuery query_;
 };
 
+// `surface`: that the mesh was made of, placed where the mesh is.
 MeshIntersections mesh_intersections(const QuadMesh& mesh, const PlacedSurface& surface, const Progress& progress);
 
 }  // namespace hybrid_mesh

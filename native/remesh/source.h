@@ -30,6 +30,7 @@ struct Source {
   // Of a half: the normal of the plane that it is mirrored in, which goes through the origin once placed, and where it is on the whole.
   std::optional<Vec3> mirror;
   std::shared_ptr<const HalfSurface> half;
+  PlacedSurface placed() const { return {&repaired, placement}; }
   int copies() const { return mirror ? 2 : 1; }  // of `repaired` in the mesh that is made
   // Of the whole with symmetry: the half and its mirror image, of unit size, which is what the mesh is to be like.
   std::shared_ptr<const DistanceReference> symmetric;

@@ -8,7 +8,8 @@
 
 #include "remesh/angle_relaxation.h"
 #include "remesh/crossing_faces.h"
-#include "remesh/crossing_guard.h"
+#include "remesh/face_separation.h"
+#include "remesh/mesh_intersections.h"
 #include "remesh/surface_samples.h"
 
 namespace hybrid_mesh {

@@ -3,7 +3,7 @@
 
 #include "hierarchy/hybrid_mesh.h"
 #include "remesh/fit.h"
-#include "remesh/mesh_intersections.h"
+#include "surface/placement.h"
 #include "surface/size_field.h"
 
 namespace hybrid_mesh {

@@ -129,12 +129,7 @@ Finished measured(const RemeshTask& task, const Candidate& candidate, const Prog
     const DistanceReference wanted(to_soup(source.placement.to_unit(source.repaired)));
     distance = wanted.distance(to_soup(mesh), DistanceOptions(), progress.part(0, 0.5));
   }
-  return {task,
-          candidate,
-          quad_quality(mesh),
-          mean_width(mesh),
-          distance,
-          mesh_intersections(mesh, {&source.repaired, source.placement}, progress.part(0.5, 1))};
+  return {task, candidate, quad_quality(mesh), mean_width(mesh), distance, mesh_intersections(mesh, source.placed(), progress.part(0.5, 1))};
 }
 
 std::vector<Reason> reasons_against(const Finished& finished) {

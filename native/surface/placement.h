@@ -18,6 +18,11 @@ struct Placement {
     return surface;
   }
 };
+// A surface where it stands, and what brings it to unit size.
+struct PlacedSurface {
+  const TriangleSurface* surface = nullptr;  // none: there is no surface
+  Placement placement;
+};
 Placement placement_of(const std::vector<Vec3>& points);
 
 }  // namespace hybrid_mesh

@@ -69,7 +69,7 @@ class BaseDomain {
   MeshFeatures features_;        // with the corners of both
   std::vector<char> on_mirror_;  // see DecimationOptions
   Decimated decimated_;
-  // Once a cut has its mesh: where the walks around its vertices begin, which what was tried and undone has a part in.
+  // Once a cut has its mesh: per vertex alive EditMesh::out, which also depends on edits that were tried and undone, and are not in the log.
   std::vector<std::pair<int, int>> walks_;
 };
 
