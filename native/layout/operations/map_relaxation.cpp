@@ -61,11 +61,11 @@ RelaxedMaps relaxed_maps(const MappedSurface& part, const std::vector<int>& patc
   FaceSources sources = make_own_source(surface, glued);
   ChartMesh charts(surface, corners);
   charts.scale = scale;
+  charts.held.resize(charts.points.size(), 0);
   for (std::size_t k = 0; k < patches.size(); ++k)
     for (int i = 0; i < 4; ++i)
       if (surface.neighbours[k][i].patch < 0 && level.neighbours[numbers[k]][i].patch >= 0)
-        for (const int v : surface.sides[k][i]) charts.kind[v] = ChartMesh::Kind::Pinned;
-  options.corners_move = false;  // ends of what is held are among them
+        for (const int v : surface.sides[k][i]) charts.kind[v] = ChartMesh::Kind::Pinned, charts.held[v] = 1;
   double area = 0;
   for (int f = 0; f < charts.mesh.face_count; ++f) area += charts.flat(f).area;
   merge_inserted(charts, surface.inserted, sources);

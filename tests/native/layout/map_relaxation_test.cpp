@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "hierarchy/bases.h"
@@ -14,19 +16,32 @@
 namespace hybrid_mesh {
 namespace {
 
-// A square, bent and unevenly mapped, by triangles that know nothing of its 8 x 8 quads.
-LevelState square_of_quads() {
+// The 8 x 8 quads of one map.
+LevelState quads_of(PatchMap map) {
   LevelState state;
   state.quads.nodes = {{0, 1, 2, 3}};
   state.quads.neighbours.resize(1);
   state.quads.node_count = 4;
   state.area = 1;
-  state.maps.push_back(
-      {std::make_shared<const PatchMap>(
-           make_map(5, 0.3, 5, [](double u, double v) { return Vec3(u * (0.6 + 0.4 * u), v + 0.2 * std::sin(3 * u) * v * (1 - v), 0.2 * u * v); })),
-       {}});
+  state.maps.push_back({std::make_shared<const PatchMap>(std::move(map)), {}});
   for (int k = 0; k < 3; ++k) state = quadrisected(state);
   return state;
+}
+
+// A square, bent and unevenly mapped, by triangles that know nothing of its 8 x 8 quads.
+LevelState square_of_quads() {
+  return quads_of(
+      make_map(5, 0.3, 5, [](double u, double v) { return Vec3(u * (0.6 + 0.4 * u), v + 0.2 * std::sin(3 * u) * v * (1 - v), 0.2 * u * v); }));
+}
+
+// A flat square; what is mapped to the corner (0, 0) lies beside it, where the boundary is straight: a patch between its four sides (Coons).
+const Vec3 astray(0.125, 0, 0);
+LevelState square_with_a_corner_astray() {
+  const auto left = [](double v) { return v < astray.x() ? Vec3(astray.x() - v, 0, 0) : Vec3(0, (v - astray.x()) / (1 - astray.x()), 0); };
+  return quads_of(make_map(16, 0, 1, [&](double u, double v) -> Vec3 {
+    const Vec3 between_rows = Vec3((1 - v) * (1 - u) * astray.x() + u, v, 0), between_columns = (1 - u) * left(v) + u * Vec3(1, v, 0);
+    return between_rows + between_columns - ((1 - u) * ((1 - v) * astray + Vec3(0, v, 0)) + u * Vec3(1, v, 0));
+  }));
 }
 
 // Relaxes the maps of some quads together, and returns their energy.
@@ -87,6 +102,62 @@ TEST(MapRelaxation, RepeatedItLeavesTheSurfaceAndDoesNotFillMapsWithPoints) {
         for (int k = 0; k < 3; ++k) p += static_cast<double>(map.source[t][3 * i + k]) * root.positions[corners[k]];
         EXPECT_LT((p - map.positions[map.triangles[t][i]]).norm(), 1e-5);
       }
+}
+
+// Where the corner (0, 0) of a level of one map lies.
+Vec3 corner_of(const LevelState& state) {
+  std::vector<int> all(state.quads.patch_count());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<int> quads_at(state.quads.node_count, 0);
+  for (const auto& nodes : state.quads.nodes)
+    for (const int n : nodes) ++quads_at[n];
+  const std::vector<PatchMap> maps = maps_of(state, all);
+  for (std::size_t q = 0; q < maps.size(); ++q)
+    if (quads_at[state.quads.nodes[q][0]] == 1) return PatchSampler(maps[q])(0, 0).position;
+  ADD_FAILURE() << "no quad has it";
+  return Vec3::Zero();
+}
+
+TEST(MapRelaxation, CornersOnTheBoundaryGoWhereItTurns) {
+  LevelState state = square_with_a_corner_astray();
+  std::vector<int> all(state.quads.patch_count());
+  std::iota(all.begin(), all.end(), 0);
+  ASSERT_LT((corner_of(state) - astray).norm(), 1e-9);
+  relax(state, all);
+  measured(state, all);
+  EXPECT_LT(corner_of(state).norm(), 1e-9);
+}
+
+TEST(MapRelaxation, WhatIsHeldStaysWhereItIs) {
+  LevelState state = square_with_a_corner_astray();
+  // All but the quads of three corners: what they share with the others ends on the boundary.
+  std::vector<int> part, others;
+  std::vector<int> quads_at(state.quads.node_count, 0);
+  for (const auto& nodes : state.quads.nodes)
+    for (const int n : nodes) ++quads_at[n];
+  for (int q = 0; q < state.quads.patch_count(); ++q) {
+    const auto& nodes = state.quads.nodes[q];
+    const bool is_corner = std::any_of(nodes.begin(), nodes.end(), [&](int n) { return quads_at[n] == 1; });
+    (is_corner && quads_at[nodes[0]] != 1 ? others : part).push_back(q);
+  }
+  ASSERT_EQ(others.size(), 3);
+  const auto ends = [&] {
+    std::vector<Vec3> points;
+    for (const PatchMap& map : maps_of(state, others)) {
+      const PatchSampler at(map);
+      for (const double u : {0, 1})
+        for (const double v : {0, 1}) points.push_back(at(u, v).position);
+    }
+    return points;
+  };
+  const std::vector<Vec3> before = ends();
+  std::vector<int> all(state.quads.patch_count());
+  std::iota(all.begin(), all.end(), 0);
+  const double area = measured(state, all).area;
+  relax(state, part);
+  EXPECT_EQ(ends(), before);
+  EXPECT_NEAR(measured(state, all).area, area, 1e-9);  // no gap, nothing twice
+  EXPECT_LT(corner_of(state).norm(), 1e-9);
 }
 
 TEST(MapRelaxation, MapsKnowTheirOwnPoints) {
