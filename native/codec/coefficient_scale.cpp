@@ -22,9 +22,4 @@ double coefficient_scale(int kind, std::size_t component, int levels) { return c
 
 int coefficient_kind(DetailKind kind) { return kind == DetailKind::Edge ? 0 : kind == DetailKind::Face ? 1 : 2; }
 
-std::vector<Frame> predicted_frames(const WaveletStep& step, const std::vector<Vec3>& coarse) {
-  const std::vector<Vec3> smooth = step.synthesise({coarse, std::vector<Vec3>(step.details().size(), Vec3::Zero()), {}});
-  return surface_frames(step.fine(), smooth);
-}
-
 }  // namespace hybrid_mesh

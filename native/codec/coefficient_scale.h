@@ -19,9 +19,4 @@ double coefficient_scale(int kind, std::size_t component, int levels);
 
 int coefficient_kind(DetailKind kind);
 
-inline const Frame coordinate_axes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
-
-// Of a step's fine vertices, where subdivision alone puts them.
-std::vector<Frame> predicted_frames(const WaveletStep& step, const std::vector<Vec3>& coarse);
-
 }  // namespace hybrid_mesh

@@ -66,9 +66,9 @@ bool GluingWay::ask(Question question, int gate, bool answer) {
   const Gate& g = gates_[gate];
   const int end = degree(gates_[g.next].start_degree), start = degree(g.start_degree), ahead = degree(gates_[gates_[g.next].next].start_degree);
   GluingCoder::Decision& decision = c_.decisions_[question];
-  return decision.mixer.code(
-      *c_.coder_, answer,
-      {&decision.end[end], &decision.both[end * GluingCoder::degrees + start], &decision.ahead[end * GluingCoder::degrees + ahead]}, 3);
+  const std::array<BitModel*, 3> models = {&decision.end[end], &decision.both[end * GluingCoder::degrees + start],
+                                           &decision.ahead[end * GluingCoder::degrees + ahead]};
+  return decision.mixer.code(*c_.coder_, answer, models);
 }
 
 void GluingWay::add_quad(int given_quad, int turn) {

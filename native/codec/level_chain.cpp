@@ -27,7 +27,7 @@ Vec3 turned_out(const Frame& frame, const Vec3& c) { return c[0] * frame[0] + c[
 
 }  // namespace
 
-LevelChain::LevelChain(const HybridMesh& hierarchy) {
+LevelChain::LevelChain(const HybridMesh& hierarchy) : steps_(wavelet_steps(hierarchy)) {
   const int depth = hierarchy.depth();
   const auto add_part = [&](std::size_t rows) { first_.push_back(first_.back() + static_cast<Eigen::Index>(rows)); };
   first_.push_back(0);
@@ -36,7 +36,7 @@ LevelChain::LevelChain(const HybridMesh& hierarchy) {
   weight_.assign(base, coefficient_weight(base_kind, depth));
   slides_.assign(base, 0);
   for (int j = 1; j <= depth; ++j) {
-    const WaveletStep& step = steps_.emplace_back(hierarchy, j);
+    const WaveletStep& step = steps_[j - 1];
     matrix_.push_back(step.synthesis());
     transposed_.emplace_back(matrix_.back().transpose());
     add_part(step.details().size());
@@ -48,11 +48,11 @@ LevelChain::LevelChain(const HybridMesh& hierarchy) {
   frames_.assign(weight_.size(), coordinate_axes);
 }
 
-void LevelChain::set_frames(int level, const std::vector<Vec3>& coarse) {
+void LevelChain::set_frames(int level, const std::vector<Vec3>& subdivided) {
   const WaveletStep& step = steps_[level - 1];
-  const std::vector<Frame> frames = predicted_frames(step, coarse);
+  const SurfaceFrames frames(step.fine(), subdivided);
   for (std::size_t d = 0; d < step.details().size(); ++d)
-    if (const auto row = first_[level] + static_cast<Eigen::Index>(d); slides_[row]) frames_[row] = frames[step.details()[d].vertex];
+    if (const auto row = first_[level] + static_cast<Eigen::Index>(d); slides_[row]) frames_[row] = frames(step.details()[d].vertex);
 }
 
 Columns LevelChain::details_of(const Columns& coefficients, int level) const {
@@ -62,10 +62,6 @@ Columns LevelChain::details_of(const Columns& coefficients, int level) const {
     details.row(d) = turned_out(frames_[row], coefficients.row(row).transpose()).transpose() / weight_[row];
   }
   return details;
-}
-
-std::vector<Vec3> LevelChain::level_points(std::vector<Vec3> coarse, const Columns& details, int level) const {
-  return steps_[level - 1].synthesise({std::move(coarse), points_of(details), {}});
 }
 
 Columns LevelChain::analyse(const std::vector<Vec3>& points) {
@@ -79,7 +75,7 @@ Columns LevelChain::analyse(const std::vector<Vec3>& points) {
   Columns coefficients(rows(), 3);
   coefficients.topRows(first_[1]) = weight_[0] * columns_of(levels[0]);
   for (int j = 1; j <= depth(); ++j) {
-    set_frames(j, levels[j - 1]);
+    set_frames(j, steps_[j - 1].subdivided(levels[j - 1]));
     for (Eigen::Index row = first_[j]; row < first_[j + 1]; ++row)
       coefficients.row(row) = weight_[row] * turned_in(frames_[row], details[j][row - first_[j]]).transpose();
   }
@@ -91,10 +87,11 @@ Columns LevelChain::reframed(const Columns& coefficients) {
   std::vector<Vec3> points = points_of(coefficients.topRows(first_[1]) / weight_[0]);
   for (int j = 1; j <= depth(); ++j) {
     const Columns details = details_of(coefficients, j);
-    set_frames(j, points);
+    std::vector<Vec3> subdivided = steps_[j - 1].subdivided(points);
+    set_frames(j, subdivided);
     for (Eigen::Index d = 0; d < details.rows(); ++d)
       result.row(first_[j] + d) = weight_[first_[j] + d] * turned_in(frames_[first_[j] + d], details.row(d).transpose()).transpose();
-    points = level_points(std::move(points), details, j);
+    points = steps_[j - 1].detailed(std::move(subdivided), points_of(details), {});
   }
   return result;
 }

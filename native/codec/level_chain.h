@@ -37,8 +37,7 @@ class LevelChain {
 
  private:
   Columns details_of(const Columns& coefficients, int level) const;
-  std::vector<Vec3> level_points(std::vector<Vec3> coarse, const Columns& details, int level) const;
-  void set_frames(int level, const std::vector<Vec3>& coarse);
+  void set_frames(int level, const std::vector<Vec3>& subdivided);
 
   std::vector<WaveletStep> steps_;
   std::vector<Eigen::SparseMatrix<double, Eigen::RowMajor>> matrix_, transposed_;

@@ -22,12 +22,19 @@ struct CoefficientLayout {
     // Components are those of the coordinates, not of a frame: an operation's vertices are far from what they are predicted by, which may be a point.
     bool unturned = false;
   };
+  struct Neighbour {
+    std::uint32_t item : 31;
+    std::uint32_t twice : 1;  // whether it counts twice
+  };
   std::vector<Item> items;
-  // Of each item: others whose size tells about its own, with weights 1 or 2.
+  // Of each item: others whose size tells about its own, as its own does about theirs.
   std::vector<std::size_t> first_neighbour{0};
-  std::vector<std::pair<int, int>> neighbours;
+  std::vector<Neighbour> neighbours;
+  std::vector<std::uint32_t> weight;  // #items: what the neighbours count together
   // Vertices of the level's mesh without an item, and the items one edge away.
-  std::vector<std::pair<int, std::vector<int>>> bare;
+  std::vector<int> bare;
+  std::vector<std::size_t> first_beside{0};
+  std::vector<int> beside;
   // Vertices of the coarser mesh between which it is; -1: fewer than four.
   std::vector<std::array<int, 4>> parents;
 };
@@ -46,6 +53,7 @@ struct Coefficients {
 
   // Within its interval, where the mean of what is likely there is.
   double value(std::size_t i) const;
+  bool is_zero(std::size_t item) const { return (size[components * item] | size[components * item + 1] | size[components * item + 2]) == 0; }
 };
 
 // Goes through the bit-planes of one stream.
@@ -65,9 +73,20 @@ class PlaneCoder {
     std::array<BitModel, bins * bins> both;
     std::array<BitModel, levels> level;
   };
-  void code_coefficient(Coefficients& known, std::size_t i, int kind, int level, std::uint32_t near, std::uint32_t above, const Coefficients* all);
+  // Of an item's component across the surface, and of those along it.
+  using Pair = std::array<std::uint64_t, 2>;
+  struct Context {
+    int near = 0, above = 0, mean = 0;  // bins
+  };
+  static Context context(const CoefficientLayout& layout, std::size_t item, std::size_t along, const Pair& around, const std::vector<Pair>& above);
+  bool code_significance(Significance& models, const Context& context, int own, int level, bool bit);
+  void code_item(const CoefficientLayout& layout, Coefficients& known, std::size_t item, int level, const Pair& around,
+                 const std::vector<Pair>& above, const Coefficients* all);
 
   BitCoder& coder_;
+  // By level, of each item: the neighbours' sizes so far, each as often as it counts. Few change in a plane, and these are added where they are
+  // known.
+  std::array<std::vector<Pair>, levels> around_;
   std::array<Significance, components * kinds> significance_;
   std::array<BitModel, components * 4> refinement_;
 };

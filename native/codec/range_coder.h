@@ -15,39 +15,53 @@ struct StreamEnd {};
 // Bits in the order that both sides go through them by the same code: a writer is told each bit, a reader tells it.
 class BitCoder {
  public:
-  virtual ~BitCoder() = default;
-  virtual bool reads() const = 0;
   // `one`: how likely a one is, in 1/65536, within [1, 65535]. A reader ignores `bit`. Returns the bit.
-  virtual bool code(bool bit, std::uint32_t one) = 0;
+  bool code(bool bit, std::uint32_t one) {
+    // The last number of the part of [low, high] that stands for a one. It is below `high`.
+    const std::uint32_t middle = low_ + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high_ - low_) * one) >> 16);
+    if (reads_) {
+      bit = with_zeros_ <= middle;
+      if (bit != (with_ones_ <= middle)) throw StreamEnd();
+    }
+    if (bit)
+      high_ = middle;
+    else
+      low_ = middle + 1;
+    while (((low_ ^ high_) & 0xff000000u) == 0) shift();
+    return bit;
+  }
   bool code_raw(bool bit) { return code(bit, 1u << 15); }
+
+ protected:
+  explicit BitCoder(bool reads) : reads_(reads) {}
+  ~BitCoder() = default;
+  void read_byte();
+
+  std::uint32_t low_ = 0, high_ = 0xffffffffu;
+  std::vector<std::uint8_t> written_;
+  const std::uint8_t *at_ = nullptr, *end_ = nullptr;  // what is not read yet
+  // Four bytes that are read: with zeros and with ones in the place of those beyond the end.
+  std::uint32_t with_zeros_ = 0, with_ones_ = 0;
+
+ private:
+  // Past the first byte, which `low` and `high` agree in.
+  void shift();
+
+  bool reads_;
 };
 
 class BitWriter final : public BitCoder {
  public:
-  bool reads() const override { return false; }
-  bool code(bool bit, std::uint32_t one) override;
-  std::size_t size() const { return bytes_.size(); }
+  BitWriter() : BitCoder(false) {}
+  std::size_t size() const { return written_.size(); }
   // The fewest bytes from which a reader knows every bit.
   std::vector<std::uint8_t> finish();
-
- private:
-  std::uint32_t low_ = 0, high_ = 0xffffffffu;
-  std::vector<std::uint8_t> bytes_;
 };
 
 // Decodes what a prefix says for certain: with zeros and with ones in the place of the bytes that are missing a bit must come out the same.
 class BitReader final : public BitCoder {
  public:
   BitReader(const std::uint8_t* data, std::size_t size);
-  bool reads() const override { return true; }
-  bool code(bool bit, std::uint32_t one) override;
-
- private:
-  void shift();
-
-  const std::uint8_t *at_, *end_;
-  std::uint32_t low_ = 0, high_ = 0xffffffffu;
-  std::uint32_t with_zeros_ = 0, with_ones_ = 0;
 };
 
 }  // namespace hybrid_mesh

@@ -209,14 +209,17 @@ std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const Strea
 HybridMesh decode_stream(const std::uint8_t* data, std::size_t size) {
   const Decoded stream = decoded(data, size, nullptr);
   HybridMesh mesh = stream.geometry->mesh;
-  const std::vector<std::vector<Vec3>> levels = synthesise(*stream.geometry, stream.content);
-  const auto keep = [&](QuadMesh level, const std::vector<Vec3>& points, auto&& set) {
-    for (std::size_t v = 0; v < points.size(); ++v) level.points[v] = stream.content.placement.outward(points[v]);
-    set(level);
-  };
-  for (std::size_t j = 0; j < levels.size(); ++j)
-    keep(mesh.level_mesh(static_cast<int>(j)), levels[j], [&](const QuadMesh& level) { mesh.set_level_positions(static_cast<int>(j), level); });
-  keep(mesh.final_mesh(), levels.back(), [&](const QuadMesh& level) { mesh.set_final_positions(level); });
+  const std::vector<WaveletStep>& steps = stream.geometry->steps;
+  std::vector<std::vector<Vec3>> levels = synthesise(*stream.geometry, stream.content);
+  // What the setters of positions take of a mesh.
+  QuadMesh placed;
+  for (std::size_t j = 0; j < levels.size(); ++j) {
+    placed.vertex = j > 0 ? steps[j - 1].fine().vertex : mesh.level_mesh(0).vertex;
+    placed.points = std::move(levels[j]);
+    for (Vec3& point : placed.points) point = stream.content.placement.outward(point);
+    mesh.set_level_positions(static_cast<int>(j), placed);
+  }
+  mesh.set_final_positions(placed);
   return mesh;
 }
 

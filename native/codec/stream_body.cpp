@@ -24,31 +24,32 @@ constexpr int least_rough_bits = 5, most_rough_bits = 12;
 
 double dot(const Vec3& a, const Vec3& b) { return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z(); }
 
-// The details and remainder that coefficients stand for, added to a level's prediction.
-std::vector<Vec3> refined_points(const WaveletStep& step, const CoefficientLayout& layout, const Coefficients& known,
-                                 const std::vector<Frame>& frames, int levels, const std::vector<Vec3>& coarse) {
-  LevelAnalysis analysis{coarse, {}, {}};
+// The details and remainder that coefficients stand for, added to where subdivision alone puts a level.
+std::vector<Vec3> detailed_points(const WaveletStep& step, const CoefficientLayout& layout, const Coefficients& known, const SurfaceFrames& frames,
+                                  int levels, std::vector<Vec3> subdivided) {
+  const std::size_t count = step.details().size();
+  std::vector<Vec3> details(count, Vec3::Zero()), remainder(layout.items.size() - count, Vec3::Zero());
   for (std::size_t i = 0; i < layout.items.size(); ++i) {
+    if (known.is_zero(i)) continue;
     const auto [vertex, kind, unturned] = layout.items[i];
-    const Frame& frame = unturned ? coordinate_axes : frames[vertex];
-    Vec3 detail = Vec3::Zero();
+    const Frame frame = unturned ? coordinate_axes : frames(vertex);
+    Vec3& detail = i < count ? details[i] : remainder[i - count];
     for (std::size_t c = 0; c < components; ++c) {
       const double value = known.value(components * i + c) / coefficient_scale(kind, c, levels);
       const Vec3& axis = frame[c];
       detail = {detail.x() + value * axis.x(), detail.y() + value * axis.y(), detail.z() + value * axis.z()};
     }
-    (i < step.details().size() ? analysis.details : analysis.remainder).push_back(detail);
   }
-  return step.synthesise(analysis);
+  return step.detailed(std::move(subdivided), details, remainder);
 }
 
-Coefficients quantised(const CoefficientLayout& layout, const LevelAnalysis& analysis, const std::vector<Frame>& frames, int levels, int plane) {
+Coefficients quantised(const CoefficientLayout& layout, const LevelAnalysis& analysis, const SurfaceFrames& frames, int levels, int plane) {
   Coefficients result;
   result.plane = result.last_plane = plane;
   std::uint32_t largest = 0;
   for (std::size_t i = 0; i < layout.items.size(); ++i) {
     const auto [vertex, kind, unturned] = layout.items[i];
-    const Frame& frame = unturned ? coordinate_axes : frames[vertex];
+    const Frame frame = unturned ? coordinate_axes : frames(vertex);
     const Vec3& detail = i < analysis.details.size() ? analysis.details[i] : analysis.remainder[i - analysis.details.size()];
     for (std::size_t c = 0; c < components; ++c) {
       const double steps = std::ldexp(dot(detail, frame[c]) * coefficient_scale(kind, c, levels), plane);
@@ -103,7 +104,7 @@ int last_plane(int depth, int level) { return 27 - (depth - level); }
 std::shared_ptr<StreamGeometry> stream_geometry(HybridMesh mesh) {
   auto geometry = std::make_shared<StreamGeometry>();
   geometry->mesh = std::move(mesh);
-  for (int j = 1; j <= geometry->mesh.depth(); ++j) geometry->steps.emplace_back(geometry->mesh, j);
+  geometry->steps = wavelet_steps(geometry->mesh);
   return geometry;
 }
 
@@ -139,9 +140,10 @@ StreamContent analyse(StreamGeometry& geometry, const std::vector<Vec3>& points)
   for (std::size_t v = 0; v < at.size(); ++v)
     for (std::size_t i = 0; i < 3; ++i) at[v][static_cast<int>(i)] = content.base.value(3 * v + i);
   for (int j = 0; j < depth; ++j) {
-    const std::vector<Frame> frames = predicted_frames(geometry.steps[j], at);
+    at = geometry.steps[j].subdivided(at);
+    const SurfaceFrames frames(geometry.steps[j].fine(), at);
     content.levels.push_back(quantised(geometry.layouts[j], analyses[j], frames, depth - 1 - j, last_plane(depth, j + 1)));
-    at = refined_points(geometry.steps[j], geometry.layouts[j], content.levels[j], frames, depth - 1 - j, at);
+    at = detailed_points(geometry.steps[j], geometry.layouts[j], content.levels[j], frames, depth - 1 - j, std::move(at));
     first = std::min(first, content.levels[j].first_plane);
   }
   content.rough_bits = std::clamp(bits_at(first, depth), least_rough_bits, most_rough_bits);
@@ -154,8 +156,9 @@ std::vector<std::vector<Vec3>> synthesise(const StreamGeometry& geometry, const 
     levels[0].emplace_back(content.base.value(i), content.base.value(i + 1), content.base.value(i + 2));
   const auto depth = static_cast<int>(geometry.steps.size());
   for (int j = 0; j < depth; ++j) {
-    const std::vector<Frame> frames = predicted_frames(geometry.steps[j], levels[j]);
-    levels.push_back(refined_points(geometry.steps[j], geometry.layouts[j], content.levels[j], frames, depth - 1 - j, levels[j]));
+    std::vector<Vec3> subdivided = geometry.steps[j].subdivided(levels[j]);
+    const SurfaceFrames frames(geometry.steps[j].fine(), subdivided);
+    levels.push_back(detailed_points(geometry.steps[j], geometry.layouts[j], content.levels[j], frames, depth - 1 - j, std::move(subdivided)));
   }
   return levels;
 }

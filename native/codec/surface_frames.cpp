@@ -28,7 +28,7 @@ void subtract_along(Vec3& v, const Vec3& normal) {
 }
 
 Frame frame_of(Vec3 normal, Vec3 tangent) {
-  if (!normalise(normal)) return {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+  if (!normalise(normal)) return coordinate_axes;
   if (!normalise(tangent)) tangent.setZero();
   subtract_along(tangent, normal);
   // A direction that is almost the normal is none.
@@ -42,26 +42,22 @@ Frame frame_of(Vec3 normal, Vec3 tangent) {
 
 }  // namespace
 
-std::vector<Frame> surface_frames(const QuadMesh& mesh, const std::vector<Vec3>& points) {
-  std::vector<Vec3> normal(points.size(), Vec3::Zero()), tangent(points.size(), Vec3::Zero());
-  std::vector<char> met(points.size(), 0);
+SurfaceFrames::SurfaceFrames(const QuadMesh& mesh, const std::vector<Vec3>& points) : directions_(points.size()) {
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     const std::int64_t first = mesh.offsets[f], last = mesh.offsets[f + 1];
     const Vec3& origin = points[mesh.indices[first]];
     Vec3 area = Vec3::Zero();
     for (std::int64_t c = first + 1; c + 1 < last; ++c) area += cross(points[mesh.indices[c]] - origin, points[mesh.indices[c + 1]] - origin);
     for (std::int64_t c = first; c < last; ++c) {
-      const int v = mesh.indices[c];
-      normal[v] += area;
-      if (met[v]) continue;
-      met[v] = 1;
-      tangent[v] = points[mesh.indices[c + 1 < last ? c + 1 : first]] - points[v];
+      Directions& at = directions_[mesh.indices[c]];
+      at.normal += area;
+      if (at.met) continue;
+      at.met = true;
+      at.tangent = points[mesh.indices[c + 1 < last ? c + 1 : first]] - points[mesh.indices[c]];
     }
   }
-  std::vector<Frame> frames;
-  frames.reserve(points.size());
-  for (std::size_t v = 0; v < points.size(); ++v) frames.push_back(frame_of(normal[v], tangent[v]));
-  return frames;
 }
+
+Frame SurfaceFrames::operator()(int vertex) const { return frame_of(directions_[vertex].normal, directions_[vertex].tangent); }
 
 }  // namespace hybrid_mesh

@@ -41,7 +41,7 @@ class HierarchyArchive {
       }
     }
     if (o < operations) refuse("an operation of a level that does not exist");
-    mesh.count_leaves();
+    if (operations > 0) mesh.count_leaves();  // refinement alone keeps count
   }
 
   static HybridMesh grow(HybridMesh mesh, Growth& growth, int most_nodes) {
@@ -61,7 +61,7 @@ class HierarchyArchive {
         mesh.append(std::move(op));
       }
     }
-    mesh.count_leaves();
+    if (mesh.operation_count() > 0) mesh.count_leaves();  // refinement alone keeps count
     const std::string reason = mesh.find_choice_defect();
     if (!reason.empty()) refuse(reason);
     return mesh;

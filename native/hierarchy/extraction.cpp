@@ -247,16 +247,18 @@ QuadMesh HybridMesh::final_mesh(FaceClosure closure) const {
 // Joins two sorted lists; the later one wins.
 static void merge_positions(std::vector<std::pair<VertexId, Vec3>>& kept, const QuadMesh& mesh) {
   if (mesh.points.size() != mesh.vertex.size()) throw Error(ErrorCode::InvalidInput, "positions and vertices differ in number");
-  std::vector<std::pair<VertexId, Vec3>> added, joined;
-  added.reserve(mesh.points.size());
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) added.emplace_back(mesh.vertex[i], mesh.points[i]);
-  std::sort(added.begin(), added.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  joined.reserve(kept.size() + added.size());
+  // Sorted in linear time: names are whole numbers.
+  const auto last = std::max_element(mesh.vertex.begin(), mesh.vertex.end());
+  std::vector<int> place(last == mesh.vertex.end() ? 0 : last->code + 1, -1);
+  for (std::size_t v = 0; v < mesh.vertex.size(); ++v) place[mesh.vertex[v].code] = static_cast<int>(v);
+  std::vector<std::pair<VertexId, Vec3>> joined;
+  joined.reserve(kept.size() + mesh.points.size());
   std::size_t i = 0;
-  for (const auto& entry : added) {
-    while (i < kept.size() && kept[i].first < entry.first) joined.push_back(kept[i++]);
-    if (i < kept.size() && kept[i].first == entry.first) ++i;
-    joined.push_back(entry);
+  for (const int v : place) {
+    if (v < 0) continue;
+    while (i < kept.size() && kept[i].first < mesh.vertex[v]) joined.push_back(kept[i++]);
+    if (i < kept.size() && kept[i].first == mesh.vertex[v]) ++i;
+    joined.emplace_back(mesh.vertex[v], mesh.points[v]);
   }
   joined.insert(joined.end(), kept.begin() + static_cast<std::ptrdiff_t>(i), kept.end());
   kept = std::move(joined);

@@ -62,20 +62,17 @@ bool HybridMesh::finer(HalfEdge h) const {
   return false;
 }
 
+// A refined node across may have lost all its quads there to an operation: a leaf has to hold a part of the side.
 bool HybridMesh::has_finer_neighbour(int node, int side) const {
-  // A refined node across may have lost all its quads there to an operation.
-  std::vector<HalfEdge> stack{nodes_[node].half[side] ^ 1};
-  while (!stack.empty()) {
-    const HalfEdge h = stack.back();
-    stack.pop_back();
-    if (edges_[h >> 1].child < 0) continue;
+  const auto leaf_below = [this](const auto& self, HalfEdge h) -> bool {
+    if (edges_[h >> 1].child < 0) return false;
     for (int part = 0; part < 2; ++part) {
       const HalfEdge c = half_child(h, part);
-      if (holder_[c] >= 0 && nodes_[holder_[c] / 4].child < 0) return true;
-      stack.push_back(c);
+      if ((holder_[c] >= 0 && nodes_[holder_[c] / 4].child < 0) || self(self, c)) return true;
     }
-  }
-  return false;
+    return false;
+  };
+  return leaf_below(leaf_below, nodes_[node].half[side] ^ 1);
 }
 
 HalfEdge HybridMesh::descend(HalfEdge h, int cap) const {

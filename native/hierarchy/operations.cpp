@@ -329,6 +329,8 @@ std::vector<bool> HybridMesh::enabled() const {
 
 // Why the enabled operations together make no hierarchy.
 std::string HybridMesh::find_choice_defect() const {
+  // Regular refinement of a manifold is one.
+  if (operations_.empty()) return "";
   if (leaves().empty()) return "nothing would be left of the mesh";
   for (int cap = 0, last = deepest_level(); cap <= last; ++cap) {
     const std::string reason = find_fan_defect(cap);

@@ -48,28 +48,62 @@ FineMesh fine_mesh(const HybridMesh& hierarchy, const StepMatrix& step) {
   return mesh;
 }
 
+// A matrix of a few entries a row, those of row r from first[r] on.
+struct ShortRows {
+  std::vector<int> first, count, column;
+  std::vector<double> value;
+
+  explicit ShortRows(const std::vector<int>& most) : first(most.size() + 1, 0), count(most.size(), 0) {
+    for (std::size_t r = 0; r < most.size(); ++r) first[r + 1] = first[r] + most[r];
+    column.resize(first.back());
+    value.resize(first.back());
+  }
+  void append(int row, int at, double weight) {
+    const int place = first[row] + count[row]++;
+    column[place] = at;
+    value[place] = weight;
+  }
+  void add(int row, int at, double weight) {
+    for (int i = first[row]; i < first[row] + count[row]; ++i)
+      if (column[i] == at) {
+        value[i] += weight;
+        return;
+      }
+    append(row, at, weight);
+  }
+  // With entries by ascending column.
+  ShortRows transposed() const {
+    std::vector<int> counts(count.size(), 0);
+    for (std::size_t r = 0; r < count.size(); ++r)
+      for (int i = first[r]; i < first[r] + count[r]; ++i) ++counts[column[i]];
+    ShortRows result(counts);
+    for (std::size_t r = 0; r < count.size(); ++r)
+      for (int i = first[r]; i < first[r] + count[r]; ++i) result.append(column[i], static_cast<int>(r), value[i]);
+    return result;
+  }
+};
+
 // The mean of a vertex (1/4), its neighbours along edges (1/2) and those across its quads (1/4); on a crease or boundary, of the vertex and its
 // neighbours along that; where more than two of these meet, the vertex alone.
-SparseRows neighbour_mean(const FineMesh& mesh, int size) {
-  std::vector<int> valence(size, 0), hard(size, 0);
+ShortRows neighbour_mean(const FineMesh& mesh, int size) {
+  std::vector<int> valence(size, 0), hard(size, 0), most(size, 3);
   for (const auto& corners : mesh.corners)
     for (const int v : corners) ++valence[v];
   for (std::size_t e = 0; e < mesh.ends.size(); ++e)
     for (const int v : mesh.ends[e]) hard[v] += mesh.hard[e];
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(16 * mesh.corners.size());
-  for (int v = 0; v < size; ++v) entries.emplace_back(v, v, hard[v] < 2 ? 0.25 : hard[v] == 2 ? 0.5 : 1.0);
+  for (int v = 0; v < size; ++v)
+    if (hard[v] < 2) most[v] = 1 + 3 * valence[v];
+  ShortRows mean(most);
+  for (int v = 0; v < size; ++v) mean.add(v, v, hard[v] < 2 ? 0.25 : hard[v] == 2 ? 0.5 : 1.0);
   for (const auto& corners : mesh.corners)
     for (int i = 0; i < 4; ++i) {
       const int v = corners[i];
       // An edge between two quads counts twice.
-      for (int k = 1; k < 4 && hard[v] < 2; ++k) entries.emplace_back(v, corners[(i + k) % 4], 0.25 / valence[v]);
+      for (int k = 1; k < 4 && hard[v] < 2; ++k) mean.add(v, corners[(i + k) % 4], 0.25 / valence[v]);
     }
   for (std::size_t e = 0; e < mesh.ends.size(); ++e)
     for (int i = 0; i < 2 && mesh.hard[e]; ++i)
-      if (const int v = mesh.ends[e][i]; hard[v] == 2) entries.emplace_back(v, mesh.ends[e][1 - i], 0.25);
-  SparseRows mean(size, size);
-  mean.setFromTriplets(entries.begin(), entries.end());
+      if (const int v = mesh.ends[e][i]; hard[v] == 2) mean.add(v, mesh.ends[e][1 - i], 0.25);
   return mean;
 }
 
@@ -104,21 +138,36 @@ class CrossingSides {
 
 }  // namespace
 
-SparseRows wavelet_filters(const HybridMesh& hierarchy, const StepMatrix& step) {
+WaveletFilters wavelet_filters(const HybridMesh& hierarchy, const StepMatrix& step) {
   const auto size = static_cast<int>(step.fine.size());
   const int first_centre = step.corners + step.midpoints;
-  const SparseRows mean = neighbour_mean(fine_mesh(hierarchy, step), size);
-  SparseRows filters = (mean * mean).pruned();
+  const ShortRows mean = neighbour_mean(fine_mesh(hierarchy, step), size).transposed();
   const CrossingSides crossing(hierarchy, step);
-  for (int row = 0; row < size; ++row)
-    for (SparseRows::InnerIterator entry(filters, row); entry; ++entry) {
-      const auto column = static_cast<int>(entry.col());
-      const bool at_midpoint = row >= step.corners && row < first_centre;
+  WaveletFilters filters;
+  filters.first.assign(step.corners + 1, 0);
+  filters.entries.reserve(25 * static_cast<std::size_t>(size - step.corners));
+  std::vector<int> place(size, -1);  // of a row in the column, from its first entry
+  for (int column = step.corners; column < size; ++column) {
+    const std::size_t first = filters.entries.size();
+    for (int i = mean.first[column]; i < mean.first[column + 1]; ++i)
+      for (int k = mean.first[mean.column[i]]; k < mean.first[mean.column[i] + 1]; ++k) {
+        const int row = mean.column[k];
+        if (place[row] < 0) {
+          place[row] = static_cast<int>(filters.entries.size() - first);
+          filters.entries.push_back({row, 0});
+        }
+        filters.entries[first + place[row]].value += mean.value[k] * mean.value[i];
+      }
+    for (std::size_t e = first; e < filters.entries.size(); ++e) {
+      WaveletFilters::Entry& entry = filters.entries[e];
+      const bool at_midpoint = entry.row >= step.corners && entry.row < first_centre;
       bool turned = at_midpoint;  // of a centre
-      if (column < first_centre) turned = row < step.corners || (at_midpoint && crossing(row, column));
-      entry.valueRef() *= turned ? -filter_scale : filter_scale;
+      if (column < first_centre) turned = entry.row < step.corners || (at_midpoint && crossing(entry.row, column));
+      entry.value *= turned ? -filter_scale : filter_scale;
+      place[entry.row] = -1;
     }
-  filters.prune([&](Eigen::Index, Eigen::Index column, double) { return column >= step.corners; });
+    filters.first.push_back(filters.entries.size());
+  }
   return filters;
 }
 

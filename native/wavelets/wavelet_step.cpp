@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,6 +21,10 @@ namespace {
 // Of the largest coordinate, from the centre: what analysis leaves of an error. A remainder beyond it is kept.
 constexpr double analysis_accuracy = 1e-13;
 
+std::shared_ptr<const QuadMesh> shared_level(const HybridMesh& hierarchy, int level) {
+  return std::make_shared<const QuadMesh>(hierarchy.level_mesh(level));
+}
+
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::InvalidInput, message); }
 
 void check_points(const std::vector<Vec3>& points, std::size_t count, const std::string& what) {
@@ -32,38 +38,64 @@ void check_points(const std::vector<Vec3>& points, std::size_t count, const std:
 // Of the vertices of M^j that are made of refined quads there is a row each, in the order of StepMatrix::fine. The unknowns of analysis have the same
 // order: the row of a corner stands for its coarse vertex, that of a midpoint or centre for its detail.
 struct WaveletStep::Parts {
-  QuadMesh coarse, fine;
+  std::shared_ptr<const QuadMesh> coarse, fine;
   LevelPrediction prediction;  // of the fine mesh
-  SparseRows filters;
+  WaveletFilters filters;
   std::vector<int> unknown_of;  // #coarse: row of the vertex, -1
   std::vector<DetailVertex> details;
   std::vector<int> detail_of;                  // #rows: -1
-  std::vector<Known> known;                    // #fine: all but an operation's vertices
-  std::vector<std::array<int, 2>> edges;       // of the operations' quads
+  std::vector<Known> known;                    // #fine: all but an operation's vertices; empty if there are none of these
+  std::vector<std::array<int, 2>> edges;       // of the operations' quads, if they have vertices
   std::vector<LevelPrediction::Mean> closing;  // of the coarse mesh, which the fine one does not determine
   // Rows of coarse vertices that an operation takes away, and the coarse vertices around each, which may be of that kind, too.
   std::vector<LevelPrediction::Mean> taken;
-  SquareSystem system{SparseRows()};
 
-  Parts(const HybridMesh& hierarchy, int level, BoundaryRule boundary);
+  Parts(const HybridMesh& hierarchy, int level, std::shared_ptr<const QuadMesh> coarse, std::shared_ptr<const QuadMesh> fine, BoundaryRule boundary);
+  // Of analysis, which no reader of a stream needs: made when it is asked for.
+  const SquareSystem& system() const;
   void find_details();
   void find_operations(const HybridMesh& hierarchy, int level);
   void sort_coarse_vertices(const HybridMesh& hierarchy);
+  // Calls body(vertex, detail, row, column, value) for the entries of W where there are a vertex and a detail that is wanted, by ascending column.
+  template <class Wanted, class Body>
+  void for_filters(const Wanted& wanted, const Body& body) const {
+    for (int column = prediction.step.corners; column < static_cast<int>(detail_of.size()); ++column) {
+      const int detail = detail_of[column];
+      if (detail < 0 || !wanted(detail)) continue;
+      for (std::size_t e = filters.first[column]; e < filters.first[column + 1]; ++e) {
+        const auto& [row, value] = filters.entries[e];
+        if (const int vertex = prediction.vertex_at[row]; vertex >= 0) body(vertex, detail, row, column, value);
+      }
+    }
+  }
+  template <class Body>
+  void for_filters(const Body& body) const {
+    for_filters([](int) { return true; }, body);
+  }
   SparseRows equations() const;
   Columns right_side(const std::vector<Vec3>& fine, const std::vector<Vec3>& coarse, const Vec3& centre) const;
-  // With the operations' vertices in the harmonic extension of the others.
-  std::vector<Vec3> extended(std::vector<Vec3> points) const;
+  // Puts the operations' vertices in the harmonic extension of the others.
+  void extend(std::vector<Vec3>& points) const;
+
+ private:
+  mutable std::once_flag system_made_;
+  mutable std::optional<SquareSystem> system_;
 };
 
-WaveletStep::Parts::Parts(const HybridMesh& hierarchy, int level, BoundaryRule boundary)
-    : coarse(hierarchy.level_mesh(level - 1)),
-      fine(hierarchy.level_mesh(level)),
-      prediction(hierarchy, coarse, fine, level, boundary),
+WaveletStep::Parts::Parts(const HybridMesh& hierarchy, int level, std::shared_ptr<const QuadMesh> coarse_mesh,
+                          std::shared_ptr<const QuadMesh> fine_mesh, BoundaryRule boundary)
+    : coarse(std::move(coarse_mesh)),
+      fine(std::move(fine_mesh)),
+      prediction(hierarchy, *coarse, *fine, level, boundary),
       filters(wavelet_filters(hierarchy, prediction.step)) {
   find_details();
   find_operations(hierarchy, level);
   sort_coarse_vertices(hierarchy);
-  system = SquareSystem(equations());
+}
+
+const SquareSystem& WaveletStep::Parts::system() const {
+  std::call_once(system_made_, [&] { system_.emplace(equations()); });
+  return *system_;
 }
 
 void WaveletStep::Parts::find_details() {
@@ -74,15 +106,16 @@ void WaveletStep::Parts::find_details() {
   for (const int v : prediction.inserted) details.push_back({v, DetailKind::Inserted});
   for (const LevelPrediction::Mean& mean : prediction.closing) details.push_back({mean.vertex, DetailKind::Closing});
   std::sort(details.begin(), details.end(), [](const DetailVertex& a, const DetailVertex& b) { return a.vertex < b.vertex; });
-  std::vector<int> at(fine.vertex_count(), -1);
+  std::vector<int> at(fine->vertex_count(), -1);
   for (std::size_t d = 0; d < details.size(); ++d) at[details[d].vertex] = static_cast<int>(d);
   for (const int v : prediction.vertex_at) detail_of.push_back(v < 0 ? -1 : at[v]);
 }
 
 void WaveletStep::Parts::find_operations(const HybridMesh& hierarchy, int level) {
-  known.assign(fine.vertex_count(), Known::Yes);
+  if (prediction.inserted.empty()) return;
+  known.assign(fine->vertex_count(), Known::Yes);
   for (const int v : prediction.inserted) known[v] = Known::No;
-  const VertexIndex find(fine.vertex);
+  const VertexIndex find(fine->vertex);
   for (int o = 0; o < hierarchy.operation_count(); ++o) {
     const HybridMesh::Operation& operation = hierarchy.operation(o);
     if (!operation.enabled || operation.repatch.level != level) continue;
@@ -93,28 +126,30 @@ void WaveletStep::Parts::find_operations(const HybridMesh& hierarchy, int level)
 
 void WaveletStep::Parts::sort_coarse_vertices(const HybridMesh& hierarchy) {
   const StepMatrix& step = prediction.step;
-  const VertexIndex find(coarse.vertex);
-  unknown_of.assign(coarse.vertex_count(), -1);
-  std::vector<char> determined(coarse.vertex_count(), 0);
+  const VertexIndex find(coarse->vertex);
+  unknown_of.assign(coarse->vertex_count(), -1);
+  std::vector<char> determined(coarse->vertex_count(), 0);
   for (const auto& [c, v] : prediction.stays) determined[c] = 1;
   for (int r = 0; r < step.corners; ++r) unknown_of[step.parent[r]] = r;
-  for (int c = 0; c < static_cast<int>(coarse.vertex_count()); ++c)
-    if (unknown_of[c] < 0 && !determined[c]) closing.push_back({c, vertices_closed(hierarchy, find, coarse.vertex[c])});
+  for (int c = 0; c < static_cast<int>(coarse->vertex_count()); ++c)
+    if (unknown_of[c] < 0 && !determined[c]) closing.push_back({c, vertices_closed(hierarchy, find, coarse->vertex[c])});
+  for (int r = 0; r < step.corners; ++r)
+    if (prediction.vertex_at[r] < 0) taken.push_back({r, {}});
+  if (taken.empty()) return;
   // An operation that takes a vertex away takes all quads around it, so that all coarse quads around it are refined.
-  std::vector<std::vector<int>> around(coarse.vertex_count());
+  std::vector<std::vector<int>> around(coarse->vertex_count());
   for (const int node : step.refined)
     for (int i = 0; i < 4; ++i) {
       const int a = find(hierarchy.corner(node, i)), b = find(hierarchy.corner(node, (i + 1) % 4));
       if (prediction.vertex_at[unknown_of[a]] < 0) around[a].push_back(b);
       if (prediction.vertex_at[unknown_of[b]] < 0) around[b].push_back(a);
     }
-  for (int r = 0; r < step.corners; ++r)
-    if (prediction.vertex_at[r] < 0) taken.push_back({r, std::move(around[step.parent[r]])});
+  for (auto& [row, of] : taken) of = std::move(around[step.parent[row]]);
 }
 
 SparseRows WaveletStep::Parts::equations() const {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(prediction.step.weights.nonZeros() + filters.nonZeros());
+  entries.reserve(prediction.step.weights.nonZeros() + filters.entries.size());
   const auto size = static_cast<int>(prediction.step.fine.size());
   for (int r = 0; r < size; ++r) {
     if (prediction.vertex_at[r] < 0) {
@@ -123,9 +158,8 @@ SparseRows WaveletStep::Parts::equations() const {
     }
     for (SparseRows::InnerIterator entry(prediction.step.weights, r); entry; ++entry)
       if (const int unknown = unknown_of[entry.col()]; unknown >= 0) entries.emplace_back(r, unknown, entry.value());
-    for (SparseRows::InnerIterator entry(filters, r); entry; ++entry)
-      if (detail_of[entry.col()] >= 0) entries.emplace_back(r, static_cast<int>(entry.col()), entry.value());
   }
+  for_filters([&](int, int, int row, int column, double value) { entries.emplace_back(row, column, value); });
   for (const auto& [row, around] : taken)
     for (const int c : around) entries.emplace_back(row, unknown_of[c], -1.0 / static_cast<double>(around.size()));
   SparseRows matrix(size, size);
@@ -146,55 +180,74 @@ Columns WaveletStep::Parts::right_side(const std::vector<Vec3>& fine_points, con
   return right;
 }
 
-std::vector<Vec3> WaveletStep::Parts::extended(std::vector<Vec3> points) const {
-  for (std::size_t v = 0; v < points.size(); ++v)
-    if (known[v] == Known::No) points[v].setZero();
+void WaveletStep::Parts::extend(std::vector<Vec3>& points) const {
+  if (prediction.inserted.empty()) return;
+  for (const int v : prediction.inserted) points[v].setZero();
   extend_harmonically(edges, known, points);
-  return points;
 }
+
+WaveletStep::WaveletStep(std::unique_ptr<const Parts> parts) : parts_(std::move(parts)) {}
 
 WaveletStep::WaveletStep(const HybridMesh& hierarchy, int level, BoundaryRule boundary) {
   if (level < 1 || level > hierarchy.depth())
     refuse("there is no step to level " + std::to_string(level) + ": the hierarchy has levels 0 to " + std::to_string(hierarchy.depth()));
-  parts_ = std::make_unique<const Parts>(hierarchy, level, boundary);
+  parts_ = std::make_unique<const Parts>(hierarchy, level, shared_level(hierarchy, level - 1), shared_level(hierarchy, level), boundary);
+}
+
+std::vector<WaveletStep> wavelet_steps(const HybridMesh& hierarchy) {
+  std::vector<WaveletStep> steps;
+  std::shared_ptr<const QuadMesh> coarse = shared_level(hierarchy, 0);
+  for (int level = 1, depth = hierarchy.depth(); level <= depth; ++level) {
+    std::shared_ptr<const QuadMesh> fine = shared_level(hierarchy, level);
+    steps.push_back(WaveletStep(std::make_unique<const WaveletStep::Parts>(hierarchy, level, std::move(coarse), fine, BoundaryRule::EdgesOnly)));
+    coarse = std::move(fine);
+  }
+  return steps;
 }
 
 WaveletStep::~WaveletStep() = default;
 WaveletStep::WaveletStep(WaveletStep&&) noexcept = default;
 WaveletStep& WaveletStep::operator=(WaveletStep&&) noexcept = default;
 
-const QuadMesh& WaveletStep::coarse() const { return parts_->coarse; }
-const QuadMesh& WaveletStep::fine() const { return parts_->fine; }
+const QuadMesh& WaveletStep::coarse() const { return *parts_->coarse; }
+const QuadMesh& WaveletStep::fine() const { return *parts_->fine; }
 const std::vector<DetailVertex>& WaveletStep::details() const { return parts_->details; }
 
 std::vector<Vec3> WaveletStep::synthesise(const LevelAnalysis& analysis) const {
+  return detailed(subdivided(analysis.coarse), analysis.details, analysis.remainder);
+}
+
+std::vector<Vec3> WaveletStep::subdivided(const std::vector<Vec3>& coarse) const {
+  check_points(coarse, parts_->coarse->vertex_count(), "coarse positions");
+  std::vector<Vec3> fine = parts_->prediction.regular(coarse);
+  parts_->extend(fine);
+  parts_->prediction.close(fine);
+  return fine;
+}
+
+std::vector<Vec3> WaveletStep::detailed(std::vector<Vec3> fine, const std::vector<Vec3>& details, const std::vector<Vec3>& remainder) const {
   const Parts& parts = *parts_;
-  const std::vector<Vec3>&coarse = analysis.coarse, &details = analysis.details, &remainder = analysis.remainder;
-  check_points(coarse, parts.coarse.vertex_count(), "coarse positions");
+  check_points(fine, parts.fine->vertex_count(), "fine positions");
   check_points(details, parts.details.size(), "details");
-  if (!remainder.empty()) check_points(remainder, parts.fine.vertex_count(), "remainders");
-  const auto add_details = [&](std::vector<Vec3>& points, DetailKind kind) {
+  if (!remainder.empty()) check_points(remainder, parts.fine->vertex_count(), "remainders");
+  const auto add_details = [&](DetailKind kind) {
     for (std::size_t d = 0; d < details.size(); ++d)
-      if (parts.details[d].kind == kind) points[parts.details[d].vertex] += details[d];
+      if (parts.details[d].kind == kind) fine[parts.details[d].vertex] += details[d];
   };
-  std::vector<Vec3> fine = parts.prediction.regular(coarse);
-  for (std::size_t r = 0; r < parts.detail_of.size(); ++r) {
-    const int v = parts.prediction.vertex_at[r];
-    if (v < 0) continue;
-    for (SparseRows::InnerIterator entry(parts.filters, static_cast<Eigen::Index>(r)); entry; ++entry)
-      if (const int d = parts.detail_of[entry.col()]; d >= 0) fine[v] += entry.value() * details[d];
-  }
+  // Each vertex has its sum in the order of the columns.
+  parts.for_filters([&](int detail) { return details[detail] != Vec3::Zero(); },
+                    [&](int vertex, int detail, int, int, double value) { fine[vertex] += value * details[detail]; });
   for (std::size_t v = 0; v < remainder.size(); ++v) fine[v] += remainder[v];
-  fine = parts.extended(std::move(fine));
-  add_details(fine, DetailKind::Inserted);
+  parts.extend(fine);
+  add_details(DetailKind::Inserted);
   parts.prediction.close(fine);
-  add_details(fine, DetailKind::Closing);
+  add_details(DetailKind::Closing);
   return fine;
 }
 
 SparseRows WaveletStep::synthesis() const {
   const Parts& parts = *parts_;
-  const auto rows = static_cast<Eigen::Index>(parts.fine.vertex_count()), first = static_cast<Eigen::Index>(parts.coarse.vertex_count());
+  const auto rows = static_cast<Eigen::Index>(parts.fine->vertex_count()), first = static_cast<Eigen::Index>(parts.coarse->vertex_count());
   const Eigen::Index columns = first + static_cast<Eigen::Index>(parts.details.size());
   const auto matrix_of = [](Eigen::Index height, Eigen::Index width, const std::vector<Eigen::Triplet<double>>& entries) {
     SparseRows matrix(height, width);
@@ -208,33 +261,35 @@ SparseRows WaveletStep::synthesis() const {
     if (v < 0) continue;
     for (SparseRows::InnerIterator entry(parts.prediction.step.weights, static_cast<Eigen::Index>(r)); entry; ++entry)
       refined.emplace_back(v, entry.col(), entry.value());
-    for (SparseRows::InnerIterator entry(parts.filters, static_cast<Eigen::Index>(r)); entry; ++entry)
-      if (const int d = parts.detail_of[entry.col()]; d >= 0) refined.emplace_back(v, first + d, entry.value());
   }
+  parts.for_filters([&](int vertex, int detail, int, int, double value) { refined.emplace_back(vertex, first + detail, value); });
   for (std::size_t d = 0; d < parts.details.size(); ++d) {
     const auto& [v, kind] = parts.details[d];
     if (kind == DetailKind::Inserted) inserted.emplace_back(v, first + static_cast<Eigen::Index>(d), 1.0);
     if (kind == DetailKind::Closing) closing.emplace_back(v, first + static_cast<Eigen::Index>(d), 1.0);
   }
-  std::vector<char> is_closing(parts.fine.vertex_count(), 0);
+  std::vector<char> is_closing(parts.fine->vertex_count(), 0);
   for (const LevelPrediction::Mean& mean : parts.prediction.closing) {
     is_closing[mean.vertex] = 1;
     for (const int v : mean.of) closed.emplace_back(mean.vertex, v, 1.0 / static_cast<double>(mean.of.size()));
   }
   for (Eigen::Index v = 0; v < rows; ++v)
     if (!is_closing[v]) closed.emplace_back(v, v, 1.0);
-  const SparseRows open = harmonic_extension(parts.edges, parts.known) * matrix_of(rows, columns, refined);
-  return SparseRows(matrix_of(rows, rows, closed) * SparseRows(open + matrix_of(rows, columns, inserted))) + matrix_of(rows, columns, closing);
+  SparseRows matrix = matrix_of(rows, columns, refined);
+  if (!inserted.empty()) matrix = SparseRows(harmonic_extension(parts.edges, parts.known) * matrix) + matrix_of(rows, columns, inserted);
+  if (!closing.empty()) matrix = SparseRows(matrix_of(rows, rows, closed) * matrix) + matrix_of(rows, columns, closing);
+  return matrix;
 }
 
 LevelAnalysis WaveletStep::analyse(const std::vector<Vec3>& fine) const {
   const Parts& parts = *parts_;
-  check_points(fine, parts.fine.vertex_count(), "positions");
+  check_points(fine, parts.fine->vertex_count(), "positions");
   LevelAnalysis result;
-  result.coarse.assign(parts.coarse.vertex_count(), Vec3::Zero());
+  result.coarse.assign(parts.coarse->vertex_count(), Vec3::Zero());
   result.details.assign(parts.details.size(), Vec3::Zero());
   for (const auto& [c, v] : parts.prediction.stays) result.coarse[c] = fine[v];
-  std::vector<Vec3> predicted = parts.extended(fine);
+  std::vector<Vec3> predicted = fine;
+  parts.extend(predicted);
   for (const LevelPrediction::Mean& mean : parts.prediction.closing) predicted[mean.vertex] = mean_of(fine, mean.of);
   for (std::size_t d = 0; d < parts.details.size(); ++d)
     if (const auto& [v, kind] = parts.details[d]; kind == DetailKind::Inserted || kind == DetailKind::Closing)
@@ -246,7 +301,7 @@ LevelAnalysis WaveletStep::analyse(const std::vector<Vec3>& fine) const {
   Columns guess = Columns::Zero(right.rows(), 3);
   for (int r = 0; r < parts.prediction.step.corners; ++r)
     if (parts.prediction.vertex_at[r] >= 0) guess.row(r) = (fine[parts.prediction.vertex_at[r]] - centre).transpose();
-  const auto [solution, residual] = parts.system.solve(right, guess, analysis_accuracy);
+  const auto [solution, residual] = parts.system().solve(right, guess, analysis_accuracy);
   for (int r = 0; r < static_cast<int>(parts.prediction.vertex_at.size()); ++r) {
     const Vec3 value = solution.row(r).transpose();
     if (r < parts.prediction.step.corners)

@@ -56,6 +56,9 @@ class WaveletStep {
 
   // From coarse to fine: local, in linear time. Throws Error{InvalidInput} if there are too few or too many, or any is not finite.
   std::vector<Vec3> synthesise(const LevelAnalysis& analysis) const;
+  // The two halves of synthesis: where subdivision alone puts the fine vertices, and details and remainder added to that.
+  std::vector<Vec3> subdivided(const std::vector<Vec3>& coarse) const;
+  std::vector<Vec3> detailed(std::vector<Vec3> subdivided, const std::vector<Vec3>& details, const std::vector<Vec3>& remainder) const;
   // Its inverse, up to rounding: solves a sparse system. Throws Error{InvalidInput} in the same cases.
   LevelAnalysis analyse(const std::vector<Vec3>& fine) const;
   // Synthesis without a remainder as a matrix, #vertices of N^j x (#vertices of N^{j-1} + #details).
@@ -63,7 +66,13 @@ class WaveletStep {
 
  private:
   struct Parts;
+  explicit WaveletStep(std::unique_ptr<const Parts> parts);
+  friend std::vector<WaveletStep> wavelet_steps(const HybridMesh& hierarchy);
+
   std::unique_ptr<const Parts> parts_;
 };
+
+// To levels 1, 2, ..., depth.
+std::vector<WaveletStep> wavelet_steps(const HybridMesh& hierarchy);
 
 }  // namespace hybrid_mesh

@@ -378,7 +378,7 @@ TEST(BitModels, NumbersAndSkewedBits) {
   BitWriter skewed;
   BitModel a, b;
   Mixer mixer;
-  for (int i = 0; i < 50000; ++i) mixer.code(skewed, random() % 100 == 0, {&a, &b}, 2);
+  for (int i = 0; i < 50000; ++i) mixer.code(skewed, random() % 100 == 0, std::array<BitModel*, 2>{&a, &b});
   EXPECT_LT(static_cast<double>(skewed.finish().size()), 1.1 * 50000 * 0.0808 / 8);
 }
 
