@@ -130,24 +130,37 @@ class Decimation {
   // some cannot be as short as is wanted, all is taken back, and the numbers are chosen anew.
   void balance_curves() {
     constexpr int tries = 8;
-    const CurveClasses classes = curve_classes(mesh_, points_, features(), options_.fineness);
     std::vector<int> least = least_edges_;
     for (int f = 0; f < static_cast<int>(mesh_.alive.size()); ++f)
       if (mesh_.alive[f]) live_.push_back(f);
     const State before{log_.size(), valences_, quadrics_, curve_edges_, components_.faces, loose_};
     for (int k = 1;; ++k) {
-      const std::vector<int> wanted = wanted_edges(classes, least);
-      std::vector<int> edges = classes.edges;
-      for (bool any = true; any;) {  // what keeps one from being shorter may go with another
-        any = false;
-        for (std::size_t c = 0; c < edges.size(); ++c)
-          for (; edges[c] > wanted[c] && shorten(static_cast<int>(c)); --edges[c]) any = true;
+      CurveClasses classes = curve_classes(mesh_, points_, features(), options_.fineness);
+      std::vector<int> wanted = least;
+      for (const std::vector<int>& curves : classes.curves) {
+        int fewest = std::numeric_limits<int>::max();
+        for (const int c : curves) fewest = std::min(fewest, classes.edges[c]);
+        for (const int c : curves) wanted[c] = std::max(wanted[c], fewest);
       }
+      shorten_to(classes, wanted);
+      classes = curve_classes(mesh_, points_, features(), options_.fineness);
+      wanted = wanted_edges(classes, least);
+      const std::vector<int> edges = shorten_to(classes, wanted);
       if (edges == wanted || k == tries) return;
       for (std::size_t c = 0; c < edges.size(); ++c)
         if (edges[c] > wanted[c]) least[c] = edges[c];
       restore(before);
     }
+  }
+  std::vector<int> shorten_to(const CurveClasses& classes, const std::vector<int>& wanted) {
+    std::vector<int> edges = classes.edges;  // in the end as many as there are then
+    for (bool any = true; any;) {            // what keeps one from being shorter may go with another
+      any = false;
+      for (const std::vector<int>& curves : classes.curves)
+        for (const int c : curves)
+          for (; edges[c] > wanted[c] && shorten(c); --edges[c]) any = true;
+    }
+    return edges;
   }
   // How many edges each curve is to have.
   std::vector<int> wanted_edges(const CurveClasses& classes, const std::vector<int>& least) const {
@@ -175,12 +188,8 @@ class Decimation {
     int loose;
   };
   void restore(const State& state) {
-    for (; log_.size() > state.log; log_.pop_back()) {
-      if (log_.back().kind == MeshEdit::Kind::Collapse)
-        mesh_.undo_collapse(log_.back().half_edge);
-      else
-        mesh_.undo_flip(log_.back().half_edge);
-    }
+    for (; log_.size() > state.log; log_.pop_back())
+      log_.back().kind == MeshEdit::Kind::Collapse ? mesh_.undo_collapse(log_.back().half_edge) : mesh_.undo_flip(log_.back().half_edge);
     valences_ = state.valences, quadrics_ = state.quadrics, curve_edges_ = state.curve_edges;
     components_.faces = state.component_faces;
     loose_ = state.loose;
