@@ -52,6 +52,15 @@ void check_size(const BaseDomain& base, const Budget& budget, const Source& sour
   throw Error(ErrorCode::InvalidInput, what);
 }
 
+// A corner of sharp edges with too few quads around has one with a straight angle, and so has the finest of its quads there. With so many of these,
+// by the vertices allowed, a mesh is worse than one without sharp edges, and takes long to make.
+constexpr double kMostLacking = 0.05;
+
+void check_room(const BaseDomain& base, const Budget& budget) {
+  if (static_cast<double>(base.lacking()) > kMostLacking * static_cast<double>(budget.vertices))
+    throw NoMap("quads would have straight angles at " + std::to_string(base.lacking()) + " of the corners between sharp edges");
+}
+
 // Two quads with the same four corners are no faces of a mesh that others can read.
 bool has_twins(const QuadGraph& base) {
   std::vector<std::array<int, 4>> corners = base.nodes;
@@ -91,6 +100,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   if (options.base == BaseSize::Auto && base_options.size > kRoomyBase) base_options.size -= kRoomForARing;
   BaseDomain base = make_base(task, origin, in_use);
   check_size(base, budget, task.source, features);
+  check_room(base, budget);
   const WorkingSurface& working = in_use.of(task, origin);
   Found<BaseMap> map = map_to_base(working.mesh, base, layout_search_options(options, budget, base, request), task.progress.part(0.15, 0.5));
   if (!map) throw NoMap(map.reason);

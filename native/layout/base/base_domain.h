@@ -51,6 +51,7 @@ class BaseDomain {
   int quads() const { return static_cast<int>(decimated_.layout.quads.size()); }
   int boundary_sides() const;  // but those on the mirror
   bool has_features() const { return !features_.empty(); }
+  int lacking() const { return decimated_.layout.lacking; }  // see QuadLayout
   // Pulls the base's edges back to a version of the surface that has about `vertices_a_quad` vertices a quad (infinite: the surface itself), and cuts
   // it along them. The decimated mesh, which takes as much room as the surface's, goes into the first cut; for another it is made again.
   CutSurface cut(double vertices_a_quad, const Progress& progress);

@@ -2,6 +2,8 @@
 #include "layout/base/curve_classes.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "base/disjoint_sets.h"
 #include "surface/size_field.h"
@@ -33,11 +35,9 @@ class ClassSearch {
         out.curves.emplace_back();
       }
     for (int c = 0; c < features_.curve_count(); ++c) out.curves[number[joined_.find(c)]].push_back(c);
-    for (std::size_t p = 0; p < rims_.size(); ++p) {
-      CurveClasses::Piece& piece = out.pieces.emplace_back();
-      piece.odd = rims_[p].faces % 2 == 1;
-      std::vector<int> on_rim;
-      for (const std::vector<int>& loop : rims_[p].loops) {
+    for (const Rims& rims : rims_) {
+      std::vector<int>& on_rim = out.rims.emplace_back();
+      for (const std::vector<int>& loop : rims.loops) {
         const std::size_t before = on_rim.size();
         for (std::size_t i = 0; i < loop.size(); ++i) {
           const int curve = features_.curves()[mesh_.edge[loop[i]]];
@@ -50,10 +50,6 @@ class ClassSearch {
         }
         if (on_rim.size() == before) on_rim.push_back(features_.curves()[mesh_.edge[loop[0]]]);  // closed, without corners
       }
-      std::vector<int> times(out.curves.size(), 0);
-      for (const int curve : on_rim) ++times[number[joined_.find(curve)]];
-      for (std::size_t k = 0; k < times.size(); ++k)
-        if (times[k] % 2 == 1) piece.classes.push_back(static_cast<int>(k));
     }
     for (int& n : out.edges) n /= 2;
     return out;
@@ -140,56 +136,86 @@ class ClassSearch {
   DisjointSets joined_;  // curves
 };
 
+// Ways between pieces with odd rims over what changes two rims, or one with the boundary behind it.
+class Parity {
+ public:
+  // `rims`: see CurveClasses. Curves of one of `units` change together.
+  Parity(const std::vector<std::vector<int>>& rims, const std::vector<std::vector<int>>& units, std::size_t curves)
+      : units_(rims.size()), pieces_(units.size()) {
+    std::vector<int> unit(curves, -1);
+    for (std::size_t k = 0; k < units.size(); ++k)
+      for (const int c : units[k]) unit[c] = static_cast<int>(k);
+    for (std::size_t p = 0; p < rims.size(); ++p) {
+      std::vector<int> all;
+      for (const int c : rims[p]) all.push_back(unit[c]);
+      std::sort(all.begin(), all.end());
+      for (auto first = all.begin(); first != all.end();) {
+        const auto last = std::upper_bound(first, all.end(), *first);
+        if ((last - first) % 2 == 1) {
+          units_[p].push_back(*first);
+          pieces_[*first].push_back(static_cast<int>(p));
+        }
+        first = last;
+      }
+    }
+  }
+
+  const std::vector<int>& pieces(int unit) const { return pieces_[unit]; }
+
+  // The units to change on the way from an odd piece to the nearest other one; none: there is no way.
+  std::vector<int> way(const std::vector<char>& odd, const std::vector<char>& usable) const {
+    for (int start = 0; start < static_cast<int>(odd.size()); ++start) {
+      if (!odd[start]) continue;
+      // Breadth first.
+      std::vector<int> by(odd.size(), -1), before(odd.size(), -1), queue{start};
+      const auto back = [&](int p, std::vector<int> way) {
+        for (; p != start; p = before[p]) way.push_back(by[p]);
+        return way;
+      };
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        const int p = queue[i];
+        if (i > 0 && odd[p]) return back(p, {});
+        for (const int k : units_[p]) {
+          if (!usable[k] || pieces_[k].size() > 2) continue;
+          if (pieces_[k].size() == 1) return back(p, {k});
+          const int other = pieces_[k][0] == p ? pieces_[k][1] : pieces_[k][0];
+          if (other == start || by[other] >= 0) continue;
+          by[other] = k, before[other] = p;
+          queue.push_back(other);
+        }
+      }
+    }
+    return {};
+  }
+
+ private:
+  std::vector<std::vector<int>> units_, pieces_;  // per piece and per unit: what an odd number of curves have in common
+};
+
 }  // namespace
 
-void CurveClasses::make_even(std::vector<int>& wanted) const {
-  std::vector<char> odd, usable;
-  for (const Piece& piece : pieces) {
-    odd.push_back(piece.odd);
-    for (const int k : piece.classes) odd.back() ^= (edges[curves[k][0]] - wanted[k]) & 1;
-  }
-  const auto most = [&](int k) { return edges[curves[k][0]]; };
-  for (std::size_t k = 0; k < curves.size(); ++k) usable.push_back(wanted[k] > 1 || wanted[k] < most(static_cast<int>(k)));
-  for (std::vector<int> way = way_to_even(odd, usable); !way.empty(); way = way_to_even(odd, usable))
-    for (const int k : way) {
-      wanted[k] += wanted[k] < most(k) ? 1 : -1;
-      usable[k] = 0;
-      for (std::size_t p = 0; p < pieces.size(); ++p) odd[p] ^= std::count(pieces[p].classes.begin(), pieces[p].classes.end(), k) > 0;
-    }
-}
-
-// The classes on the way from an odd piece to the nearest other one.
-std::vector<int> CurveClasses::way_to_even(const std::vector<char>& odd, const std::vector<char>& usable) const {
-  std::vector<std::vector<int>> pieces_of(curves.size());
-  for (std::size_t p = 0; p < pieces.size(); ++p)
-    for (const int k : pieces[p].classes)
-      if (usable[k]) pieces_of[k].push_back(static_cast<int>(p));
-  for (std::size_t start = 0; start < pieces.size(); ++start) {
-    if (!odd[start]) continue;
-    // Breadth first.
-    std::vector<int> by(pieces.size(), -1), before(pieces.size(), -1), queue{static_cast<int>(start)};
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      int p = queue[i];
-      if (i > 0 && odd[p]) {
-        std::vector<int> way;
-        for (; p != static_cast<int>(start); p = before[p]) way.push_back(by[p]);
-        return way;
+void CurveClasses::make_even(std::vector<int>& wanted, const std::vector<int>& least) const {
+  std::vector<char> odd;
+  for (const std::vector<int>& rim : rims) odd.push_back(std::accumulate(rim.begin(), rim.end(), 0, [&](int n, int c) { return n + wanted[c]; }) & 1);
+  std::vector<std::vector<int>> alone;
+  for (int c = 0; c < static_cast<int>(edges.size()); ++c) alone.push_back({c});
+  for (const auto* units : {&curves, &std::as_const(alone)}) {
+    const auto all = [&](std::size_t k, const auto& may) { return std::all_of((*units)[k].begin(), (*units)[k].end(), may); };
+    const auto may_grow = [&](int c) { return wanted[c] < edges[c]; };
+    const auto may_shrink = [&](int c) { return wanted[c] > least[c]; };
+    std::vector<char> usable;
+    for (std::size_t k = 0; k < units->size(); ++k) usable.push_back(all(k, may_grow) || all(k, may_shrink));
+    std::vector<int> step(units->size(), 0);
+    const Parity parity(rims, *units, edges.size());
+    for (std::vector<int> way = parity.way(odd, usable); !way.empty(); way = parity.way(odd, usable))
+      for (const int k : way) {
+        // What an earlier way has changed is taken back: so there is a way as long as two odd rims are connected.
+        const int change = step[k] != 0 ? -step[k] : all(k, may_grow) ? 1 : -1;
+        step[k] += change;
+        for (const int c : (*units)[k]) wanted[c] += change;
+        for (const int p : parity.pieces(k)) odd[p] ^= 1;
       }
-      for (const int k : pieces[p].classes) {
-        if (!usable[k] || pieces_of[k].size() > 2) continue;
-        if (pieces_of[k].size() == 1) {  // the boundary has nothing on its other side
-          std::vector<int> way{k};
-          for (; p != static_cast<int>(start); p = before[p]) way.push_back(by[p]);
-          return way;
-        }
-        const int other = pieces_of[k][0] == p ? pieces_of[k][1] : pieces_of[k][0];
-        if (other == static_cast<int>(start) || by[other] >= 0) continue;
-        by[other] = k, before[other] = p;
-        queue.push_back(other);
-      }
-    }
   }
-  return {};
 }
 
 CurveClasses curve_classes(const EditMesh& mesh, const std::vector<Vec3>& points, const MeshFeatures& features, const std::vector<double>& fineness) {

@@ -15,6 +15,7 @@
 #include "layout/base/closed_components.h"
 #include "layout/base/curve_classes.h"
 #include "layout/base/jitter.h"
+#include "layout/base/loose_triangles.h"
 #include "layout/base/vertex_star.h"
 #include "surface/size_field.h"
 
@@ -38,6 +39,7 @@ bool is_dearer(const Candidate& a, const Candidate& b) { return a.cost != b.cost
 constexpr double kMuchLonger = 1.65;    // times the edges that curves are to have, from where on their length decides
 constexpr int kLeastOnMirror = 3;       // triangles at its vertices
 constexpr int kLeastOfClosedCurve = 4;  // edges: with fewer the quads beside it have straight corners
+constexpr int kLeastOfLoop = 3;         // of a curve from a corner to itself: with fewer it is none in a simplicial mesh
 
 // When so many times the faces asked for are left, the base takes shape.
 constexpr double kShapingFaces = 12;
@@ -51,7 +53,7 @@ class Decimation {
       : mesh_(mesh), points_(points), options_(options), log_(log), quadrics_(points.size()), components_(closed_components(mesh)) {
     valences_.assign(points.size(), 0);
     if (options.fixed.empty()) find_loops();
-    if (!features().empty()) count_curve_vertices();
+    if (!features().empty()) count_curve_edges();
     queued_.assign(points.size(), Queued::No);
     stamps_.assign(points.size(), 0);
     for (std::size_t f = 0; f < mesh.alive.size(); ++f)
@@ -107,45 +109,97 @@ class Decimation {
     if (std::all_of(loop_.begin(), loop_.end(), [](int loop) { return loop < 0; })) loop_.clear();
   }
 
-  void count_curve_vertices() {
-    on_curve_.assign(features().curve_count(), 0);
-    closed_.assign(features().curve_count(), 1);
+  void count_curve_edges() {
+    curve_edges_.assign(features().curve_count(), 0);
+    least_edges_.assign(features().curve_count(), kLeastOfClosedCurve);
+    std::vector<int> end(features().curve_count(), -1);
     for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h)
       if (mesh_.alive[h / 3] && (mesh_.opposite[h] < 0 || mesh_.opposite[h] > h) && features().on(mesh_, h)) {
         const int curve = features().curves()[mesh_.edge[h]];
-        ++on_curve_[curve];  // as many edges as vertices, but one more with corners
+        ++curve_edges_[curve];
         for (const int v : {mesh_.from(h), mesh_.to(h)})
-          if (features().is_corner(v)) closed_[curve] = 0;
-      }
-    for (std::size_t c = 0; c < on_curve_.size(); ++c) on_curve_[c] -= !closed_[c];
-  }
-  // Opposite sides get the same number of edges, curves edges of the length that they are to have, and pieces between curves an even number of
-  // triangles.
-  void balance_curves() {
-    const auto shorten_to = [&](const CurveClasses& classes, const std::vector<int>& wanted) {
-      for (std::size_t k = 0; k < wanted.size(); ++k)
-        for (const int c : classes.curves[k])
-          for (int n = classes.edges[c]; n > wanted[k] && shorten(c); --n) {
+          if (features().is_corner(v)) {
+            least_edges_[curve] = end[curve] < 0 || (end[curve] == v && least_edges_[curve] > 1) ? kLeastOfLoop : 1;
+            end[curve] = v;
           }
-    };
-    std::vector<int> wanted;
-    CurveClasses classes = curve_classes(mesh_, points_, features(), options_.fineness);
-    for (const std::vector<int>& curves : classes.curves) {
-      wanted.push_back(std::numeric_limits<int>::max());
-      for (const int c : curves) wanted.back() = std::min(wanted.back(), classes.edges[c]);
+      }
+  }
+
+  // Opposite sides get the same number of edges, curves edges of the length that they are to have, and pieces between curves an even number of
+  // triangles. How short a curve can be depends on the others: of two that have both ends in common and nothing between them one has two edges. Where
+  // some cannot be as short as is wanted, all is taken back, and the numbers are chosen anew.
+  void balance_curves() {
+    constexpr int tries = 8;
+    std::vector<int> least = least_edges_;
+    for (int f = 0; f < static_cast<int>(mesh_.alive.size()); ++f)
+      if (mesh_.alive[f]) live_.push_back(f);
+    const State before{log_.size(), valences_, quadrics_, curve_edges_, components_.faces, loose_};
+    for (int k = 1;; ++k) {
+      CurveClasses classes = curve_classes(mesh_, points_, features(), options_.fineness);
+      std::vector<int> wanted = least;
+      for (const std::vector<int>& curves : classes.curves) {
+        int fewest = std::numeric_limits<int>::max();
+        for (const int c : curves) fewest = std::min(fewest, classes.edges[c]);
+        for (const int c : curves) wanted[c] = std::max(wanted[c], fewest);
+      }
+      shorten_to(classes, wanted);
+      classes = curve_classes(mesh_, points_, features(), options_.fineness);
+      wanted = wanted_edges(classes, least);
+      const std::vector<int> edges = shorten_to(classes, wanted);
+      if (edges == wanted || k == tries) return;
+      for (std::size_t c = 0; c < edges.size(); ++c)
+        if (edges[c] > wanted[c]) least[c] = edges[c];
+      restore(before);
     }
-    shorten_to(classes, wanted);
-    classes = curve_classes(mesh_, points_, features(), options_.fineness);
-    wanted.clear();
+  }
+  std::vector<int> shorten_to(const CurveClasses& classes, const std::vector<int>& wanted) {
+    std::vector<int> edges = classes.edges;  // in the end as many as there are then
+    for (bool any = true; any;) {            // what keeps one from being shorter may go with another
+      any = false;
+      for (const std::vector<int>& curves : classes.curves)
+        for (const int c : curves)
+          for (; edges[c] > wanted[c] && shorten(c); --edges[c]) any = true;
+    }
+    return edges;
+  }
+  // How many edges each curve is to have.
+  std::vector<int> wanted_edges(const CurveClasses& classes, const std::vector<int>& least) const {
+    std::vector<int> wanted(classes.edges.size());
     for (const std::vector<int>& curves : classes.curves) {
-      wanted.push_back(classes.edges[curves[0]]);
+      int low = 1, high = std::numeric_limits<int>::max();
       double length = 0;
-      for (const int c : curves) length += classes.length[c] / static_cast<double>(curves.size());
-      const int least = std::min(wanted.back(), closed_[curves[0]] ? kLeastOfClosedCurve : 1);
-      wanted.back() = std::clamp(static_cast<int>(std::lround(length / options_.curve_edge)), least, wanted.back());
+      for (const int c : curves) {
+        low = std::max(low, least[c]), high = std::min(high, classes.edges[c]);
+        length += classes.length[c] / static_cast<double>(curves.size());
+      }
+      const int even = std::clamp(static_cast<int>(std::lround(length / options_.curve_edge)), std::min(low, high), high);
+      for (const int c : curves) wanted[c] = std::max(even, std::min(least[c], classes.edges[c]));
     }
-    classes.make_even(wanted);
-    shorten_to(classes, wanted);
+    classes.make_even(wanted, least);
+    return wanted;
+  }
+
+  // All that collapses and flips change, but the order of those to come.
+  struct State {
+    std::size_t log;
+    std::vector<int> valences;
+    std::vector<VertexQuadric> quadrics;
+    std::vector<int> curve_edges, component_faces;
+    int loose;
+  };
+  void restore(const State& state) {
+    for (; log_.size() > state.log; log_.pop_back())
+      log_.back().kind == MeshEdit::Kind::Collapse ? mesh_.undo_collapse(log_.back().half_edge) : mesh_.undo_flip(log_.back().half_edge);
+    valences_ = state.valences, quadrics_ = state.quadrics, curve_edges_ = state.curve_edges;
+    components_.faces = state.component_faces;
+    loose_ = state.loose;
+  }
+  // Calls visit(h) for the half-edges of a curve.
+  template <class Visit>
+  void for_curve(int curve, const Visit& visit) const {
+    for (const int f : live_)
+      for (int h = 3 * f; h < 3 * f + 3; ++h)
+        if (mesh_.alive[f] && features().on(mesh_, h) && features().curves()[mesh_.edge[h]] == curve) visit(h);
   }
   // Takes the cheapest vertex away from a curve.
   bool shorten(int curve) {
@@ -157,38 +211,30 @@ class Decimation {
   int cheapest_on(int curve) {
     double least = std::numeric_limits<double>::infinity();
     int best = -1;
-    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
-      if (!mesh_.alive[h / 3] || !features().on(mesh_, h) || features().curves()[mesh_.edge[h]] != curve) continue;
-      if (!features().can_collapse(mesh_, h) || !mesh_.can_collapse(h) || makes_bridge(h, star_.around)) continue;
+    for_curve(curve, [&](int h) {
+      if (!features().can_collapse(mesh_, h) || !mesh_.can_collapse(h) || makes_bridge(h, star_.around)) return;
       star_.gather(mesh_, points_, mesh_.from(h));
       for (std::size_t i = 0; i < star_.spokes.size(); ++i)
         if (star_.spokes[i].half_edge == h) {
           const double cost = full_cost(least_cost(mesh_.from(h), star_, i), mesh_.from(h), star_, i) * (features().keeps_room(mesh_, h) ? 1 : 1e3);
           if (cost < least) least = cost, best = h;
         }
-    }
+    });
     return best;
   }
   // A vertex does not go along the edge of a triangle of which another edge is on a curve, too: that one would be merged with the third. Flips the
   // third edges of such triangles.
   bool flip_beside(int curve) {
     bool any = false;
-    for (int h = 0; h < static_cast<int>(mesh_.origin.size()); ++h) {
-      if (!mesh_.alive[h / 3] || !features().on(mesh_, h) || features().curves()[mesh_.edge[h]] != curve) continue;
+    for_curve(curve, [&](int h) {
       const int next = EditMesh::next(h), previous = EditMesh::prev(h);
-      if (features().on(mesh_, next) == features().on(mesh_, previous)) continue;
+      if (features().on(mesh_, next) == features().on(mesh_, previous)) return;
       const int third = features().on(mesh_, next) ? previous : next;
-      if (mesh_.opposite[third] < 0 || !features().can_flip(mesh_, third) || !mesh_.can_flip(third) || folds(third)) continue;
+      if (mesh_.opposite[third] < 0 || !features().can_flip(mesh_, third) || !mesh_.can_flip(third) || folds(mesh_, points_, third)) return;
       flip(third);
       any = true;
-    }
+    });
     return any;
-  }
-  // Would a flip fold the two triangles? One of them may have no area.
-  bool folds(int h) const {
-    const Vec3 &a = points_[mesh_.from(h)], &b = points_[mesh_.to(h)], &c = points_[mesh_.apex(h)], &d = points_[mesh_.apex(mesh_.opposite[h])];
-    const Vec3 normal = (b - a).cross(c - a) + (a - b).cross(d - b);
-    return !((a - c).cross(d - c).dot(normal) > 0) || !((b - d).cross(c - d).dot(normal) > 0);
   }
 
   // Does the collapse keep the curves, and to each a vertex more than it needs? That one can go where the triangles beside it are to be paired.
@@ -197,7 +243,7 @@ class Decimation {
     if (!features().can_collapse(mesh_, h) || !features().keeps_room(mesh_, h)) return false;
     if (!features().is_on_curve(mesh_.from(h))) return true;
     const int curve = features().curves()[mesh_.edge[h]];
-    return on_curve_[curve] > (closed_[curve] ? 3 : 0) + 1;
+    return curve_edges_[curve] > least_edges_[curve] + 1;
   }
 
   // The part of a collapse's cost that the rest only multiplies, by no less than 1: the distance to the surface and the longest edge.
@@ -401,7 +447,7 @@ class Decimation {
       if (components_.faces[c] - 2 < least_faces) return false;
       components_.faces[c] -= 2;
     }
-    if (features().is_on_curve(v)) --on_curve_[features().curves()[mesh_.edge[h]]];
+    if (features().is_on_curve(v)) --curve_edges_[features().curves()[mesh_.edge[h]]];
     valences_[u] += valences_[v] - (mesh_.is_boundary(v) ? 3 : 4);
     --valences_[mesh_.apex(h)];
     if (o >= 0) --valences_[mesh_.apex(o)];
@@ -435,9 +481,9 @@ class Decimation {
   std::vector<Candidate> heap_;
   VertexStar star_;
   std::vector<int> ring_;
-  std::vector<int> on_curve_;  // per feature curve: its vertices, but corners
-  std::vector<char> closed_;   // per feature curve
-  std::vector<int> loop_;      // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
+  std::vector<int> live_;                       // faces that were alive when curves began to be balanced
+  std::vector<int> curve_edges_, least_edges_;  // per feature curve: how many edges it has, and has to keep
+  std::vector<int> loop_;  // per vertex its boundary loop, or -1; empty: there are none, or only the fixed vertices of them will be left
   bool shaping_ = false;
   int loose_ = 0;
 };

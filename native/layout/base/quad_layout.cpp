@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "layout/base/closed_components.h"
+#include "layout/base/loose_triangles.h"
 #include "layout/base/quad_pairs.h"
 #include "layout/base/triangle_pairing.h"
 #include "surface/size_field.h"
@@ -42,11 +43,7 @@ class QuadCoarsening : private QuadPairs {
     for (const int v : vertices_) area += quadrics_[v].area * finer(v) * finer(v);
     side_ = std::sqrt(area / std::max(1.0, options_.size));
     clean_sparing_small_components();
-    int rounds = 0;
-    while (size() > options_.size) {
-      progress(0.9 * (1 - std::exp(-0.01 * ++rounds)));
-      if (!collapse_cheapest()) break;
-    }
+    for (int rounds = 1; size() > options_.size && collapse_cheapest(); ++rounds) progress(0.9 * (1 - std::exp(-0.01 * rounds)));
     if (quad_count() > options_.least) {
       const State before = state();
       clean();
@@ -140,6 +137,7 @@ class QuadCoarsening : private QuadPairs {
     constexpr int tries = 6;
     for (int k = 0; k < tries; ++k) {
       pair();
+      if (pair_loose_triangles(mesh_, points_, features_, faces_, mate_, log_)) pair();
       if (!collapse_pairs_across()) return;
     }
     throw NoMap("the triangles between sharp edges cannot be paired");
