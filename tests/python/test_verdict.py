@@ -5,7 +5,6 @@ import csv
 import json
 import os
 import pathlib
-import re
 import subprocess
 import sys
 
@@ -36,11 +35,11 @@ def with_fold():
 
 
 def jagged():
-    """A disk with thorns around it, which a few hundred quads can follow, but not with good corners."""
-    thorns, each, rings = 40, 8, 8
+    """A disk with thorns around it, which a few hundred quads can follow, but not with good corners: between thorns it turns inwards."""
+    thorns, each, rings = 40, 24, 8
     count = thorns * each
     place = np.arange(count) / each
-    radius = 1 - 0.4 * np.abs(2 * (place % 1) - 1) ** 1.5
+    radius = 1 - 0.4 * np.abs(2 * (place % 1) - 1) ** 0.7
     angle = 2 * np.pi * place / thorns
     rim = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle], axis=1)
     k = np.arange(count)
@@ -124,7 +123,7 @@ def test_a_closed_fold(tmp_path):
 
 
 def test_inverted_quads(tmp_path):
-    outcome = Outcome(tmp_path, jagged(), "--vertices", 600)
+    outcome = Outcome(tmp_path, jagged(), "--vertices", 700)
     check_poor(outcome)
     points, offsets, indices = outcome.final()
     corners = points[indices.reshape(-1, 4)]
@@ -133,10 +132,11 @@ def test_inverted_quads(tmp_path):
     before = -np.roll(edges, 1, axis=1)
     sizes = np.linalg.norm(edges, axis=2) * np.linalg.norm(before, axis=2) * np.linalg.norm(normals, axis=1)[:, None]
     worst = (np.einsum("fij,fj->fi", np.cross(edges, before), normals) / sizes).min(axis=1)
-    # Corners on a straight part of the boundary are neither, but for rounding.
+    # Straight corners, on one edge of the surface's boundary, are neither but for rounding.
     inverted = worst < 1e-9
-    said = re.match(r"(\d+) of (\d+) quads are inverted", outcome.reasons["inverted"]["text"])
-    assert 0 < (worst < -1e-9).sum() <= int(said[1]) <= inverted.sum() and int(said[2]) == len(corners)
+    sure = int((worst < -1e-9).sum())
+    assert sure > 20 and inverted.sum() < 1.3 * sure
+    assert outcome.reasons["inverted"]["text"].startswith(tuple(f"{n} of {len(corners)} quads are inverted" for n in range(sure, inverted.sum() + 1)))
     middles = corners[inverted].mean(axis=1)
     assert np.linalg.norm(middles - outcome.reasons["inverted"]["where"], axis=1).min() < 1e-4
 
