@@ -37,7 +37,7 @@ CrossingGuard::CrossingGuard(const QuadMesh& mesh)
       faces_at_(mesh.points.size()),
       start_(triangulate(to_soup(mesh))),
       at_start_(mesh.points, start_.triangles),
-      has_moved_(mesh.face_count(), 0) {
+      moved_at_(mesh.face_count(), -1) {
   for (int f = 0; f < static_cast<int>(mesh.face_count()); ++f) mesh.for_corners(f, [&](int v) { faces_at_[v].push_back(f); });
 }
 
@@ -66,21 +66,34 @@ int CrossingGuard::crossings(int v, const Vec3& place) const {
   return static_cast<int>(pairs.size());
 }
 
+bool CrossingGuard::allows(int v, const Vec3& place) const {
+  const int there = crossings(v, place);
+  return there == 0 || there <= crossings(v, mesh_.points[v]);
+}
+
 void CrossingGuard::moved(int v) {
-  for (const int f : faces_at_[v])
-    if (!std::exchange(has_moved_[f], 1)) moved_faces_.push_back(f);
+  for (const int f : faces_at_[v]) {
+    if (moved_at_[f] < 0) {
+      moved_at_[f] = static_cast<int>(moved_faces_.size());
+      moved_faces_.push_back({f, {}});
+    }
+    moved_faces_[moved_at_[f]].box = box_of(f);
+  }
+}
+
+Box CrossingGuard::box_of(int face) const {
+  Box box;
+  mesh_.for_corners(face, [&](int v) { box.extend(mesh_.points[v]); });
+  return box;
 }
 
 std::vector<int> CrossingGuard::faces_in_box(const Eigen::AlignedBox3d& box) const {
   std::vector<int> near, faces;
   at_start_.faces_in_box(box.min(), box.max(), start_.triangles.size(), near);
   for (const int t : near)
-    if (const int f = start_.polygon[t]; !has_moved_[f]) faces.push_back(f);
-  for (const int f : moved_faces_) {
-    Box of_face;
-    mesh_.for_corners(f, [&](int w) { of_face.extend(mesh_.points[w]); });
-    if (box.intersects(of_face)) faces.push_back(f);
-  }
+    if (const int f = start_.polygon[t]; moved_at_[f] < 0) faces.push_back(f);
+  for (const MovedFace& moved : moved_faces_)
+    if (box.intersects(moved.box)) faces.push_back(moved.face);
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   return faces;

@@ -18,21 +18,27 @@ class CrossingGuard {
   // The pairs of faces, one of them at the vertex, that meet elsewhere than at the vertices that they share, if the vertex is at a place.
   int crossings(int v, const Vec3& place) const;
   // May the vertex go there: are there no more such pairs than now?
-  bool allows(int v, const Vec3& place) const { return crossings(v, place) <= crossings(v, mesh_.points[v]); }
+  bool allows(int v, const Vec3& place) const;
   // To be called for every vertex that has been moved.
   void moved(int v);
 
   const std::vector<int>& faces_at(int v) const { return faces_at_[v]; }
 
  private:
+  struct MovedFace {
+    int face;
+    Eigen::AlignedBox3d box;
+  };
+
+  Eigen::AlignedBox3d box_of(int face) const;
   std::vector<int> faces_in_box(const Eigen::AlignedBox3d& box) const;
 
   const QuadMesh& mesh_;
   std::vector<std::vector<int>> faces_at_;  // per vertex
   const Triangulation start_;               // of the mesh as it was at the start
   const SurfaceDistanceQuery at_start_;     // on these triangles
-  std::vector<char> has_moved_;             // per face
-  std::vector<int> moved_faces_;
+  std::vector<int> moved_at_;               // per face: its place among the moved ones, -1: it is where it was
+  std::vector<MovedFace> moved_faces_;
 };
 
 }  // namespace hybrid_mesh

@@ -6,7 +6,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace hybrid_mesh {
 namespace {
@@ -31,6 +33,38 @@ bool folded(const TriangleCorners& a, const TriangleCorners& b) {
 }
 
 Vec3 normal_of(const TriangleCorners& t) { return (*t[1] - *t[0]).cross(*t[2] - *t[0]); }
+
+constexpr double kSure = 1e-9;  // of a length: far above what rounding changes, far below what matters to how often it is sure
+
+// Are two triangles surely on opposite sides of a plane across to a direction? `from`: a corner that they share, which may lie on it.
+bool parted(const TriangleCorners& a, const TriangleCorners& b, const Vec3& direction, const Vec3* from) {
+  double above = -std::numeric_limits<double>::infinity(), below = -above, size = 0;
+  for (const Vec3* p : a)
+    if (p != from) above = std::max(above, direction.dot(*p - *a[0])), size = std::max(size, (*p - *a[0]).squaredNorm());
+  for (const Vec3* p : b)
+    if (p != from) below = std::min(below, direction.dot(*p - *a[0])), size = std::max(size, (*p - *a[0]).squaredNorm());
+  const double margin = kSure * std::sqrt(size) * direction.norm();
+  if (!from) return above + margin < below;
+  const double middle = direction.dot(*from - *a[0]);
+  return above + margin < middle && middle + margin < below;
+}
+
+// A fast look for a plane between two triangles, which share the corners a[i] and b[j], or none where `shared` is 0. Most pairs that are asked for
+// lie beside each other on a surface, and have one.
+bool surely_apart(const TriangleCorners& a, const TriangleCorners& b, int shared, int i, int j) {
+  if (shared == 0) {
+    const Vec3 across = (*b[0] + *b[1] + *b[2]) - (*a[0] + *a[1] + *a[2]), normal_a = normal_of(a), normal_b = normal_of(b);
+    const auto along = [&](const Vec3& n) { return n.dot(across) < 0 ? Vec3(-n) : n; };
+    return parted(a, b, across, nullptr) || parted(a, b, along(normal_a), nullptr) || parted(a, b, along(normal_b), nullptr);
+  }
+  const auto to = [](const TriangleCorners& t, int from, int k) { return Vec3((*t[(from + k) % 3] - *t[from]).normalized()); };
+  const std::array<Vec3, 2> of_a{to(a, i, 1), to(a, i, 2)}, of_b{to(b, j, 1), to(b, j, 2)};
+  if (parted(a, b, of_b[0] + of_b[1] - of_a[0] - of_a[1], a[i])) return true;
+  for (const Vec3& p : of_a)
+    for (const Vec3& q : of_b)
+      if (parted(a, b, q - p, a[i])) return true;
+  return false;
+}
 
 bool in_plane_of(const TriangleCorners& t, const Vec3& p) { return CGAL::coplanar(exact(*t[0]), exact(*t[1]), exact(*t[2]), exact(p)); }
 
@@ -82,11 +116,12 @@ bool triangles_meet(const TriangleCorners& a, const TriangleCorners& b) {
     if (std::max({(*a[0])[k], (*a[1])[k], (*a[2])[k]}) < std::min({(*b[0])[k], (*b[1])[k], (*b[2])[k]}) ||
         std::max({(*b[0])[k], (*b[1])[k], (*b[2])[k]}) < std::min({(*a[0])[k], (*a[1])[k], (*a[2])[k]}))
       return false;
-  if (flat(a) || flat(b)) return false;
   int shared = 0, i = 0, j = 0;
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < 3; ++l)
       if (a[k] == b[l]) ++shared, i = k, j = l;
+  if (shared < 2 && surely_apart(a, b, shared, i, j)) return false;
+  if (flat(a) || flat(b)) return false;
   if (shared == 3) return true;
   // Beyond a common edge they meet only if they lie on each other.
   if (shared == 2) return folded(a, b);
