@@ -95,25 +95,36 @@ void keep_better(Candidate& best, Found<Candidate> other) {
   if (other && other->distance.hausdorff < best.distance.hausdorff && other->distance.l2 <= best.distance.l2) best = std::move(*other);
 }
 
-// The best of what is tried for a target. `another`: with near-ties decided in another way. Not fitted where some of the topology finds no room to
-// open.
-CandidateSearch best_for(const RemeshTask& task, const Target& target, bool another) {
-  CandidateSearch search = search_candidate(task, target, base_requests(task.options, another));
-  if (!search.candidate || !search.candidate->unopened.empty()) return search;
-  Candidate& best = *search.candidate;
-  best = fitted(task, std::move(best), true);
-  if (best.keeps_features || task.options.error > 0 || !misses_a_limb(task, best)) return search;
-  keep_better(best, another_candidate(task));
-  if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
-  return search;
-}
-
 // Between sharp sides quads may have no room. A mesh of which so many quads are inverted is compared with one without sharp sides.
 constexpr double kManyInverted = 0.005;
 // ... and of so many no other base between the same sides is tried.
 constexpr double kHopeless = 0.05;
 
 double inverted(const Candidate& c) { return quad_quality(c.final_mesh).inverted; }
+
+// Is so much inverted where the maps put it, between sharp sides? No fit unfolds that.
+bool is_hopeless(const RemeshTask& task, Candidate& c) {
+  if (!c.keeps_features || task.options.refinement != Refinement::Uniform || task.options.error > 0) return false;
+  c.hierarchy.refine_uniform(std::max(c.levels, c.finest));
+  return quad_quality(c.hierarchy.level_mesh(c.levels)).inverted > kHopeless;
+}
+
+// The best of what is tried for a target. `another`: with near-ties decided in another way. Not fitted where some of the topology finds no room to
+// open.
+CandidateSearch best_for(const RemeshTask& task, const Target& target, bool another) {
+  CandidateSearch search = search_candidate(task, target, base_requests(task.options, another));
+  if (!search.candidate || !search.candidate->unopened.empty()) return search;
+  Candidate& best = *search.candidate;
+  if (target.features && is_hopeless(task, best)) {
+    search.candidate = {std::nullopt, "the quads between them would be distorted"};
+    return search;
+  }
+  best = fitted(task, std::move(best), true);
+  if (best.keeps_features || task.options.error > 0 || !misses_a_limb(task, best)) return search;
+  keep_better(best, another_candidate(task));
+  if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
+  return search;
+}
 
 // What counts against a mesh: how bad what makes it poor is, then distance, and a good deal more of it where quads are inverted.
 struct Badness {
@@ -159,16 +170,16 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   return without;
 }
 
-// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows. Not of a large surface, of which
-// a mesh takes long, and where it is poor in a few places of many.
+// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows. Not of a large surface or base,
+// of which a mesh takes long, and where it is poor in a few places of many.
 CandidateSearch best_by_need(const RemeshTask& task) {
-  constexpr int tries = 2;
+  constexpr int tries = 2, most_base_quads = 1500;
   constexpr std::size_t most_faces = 500000;
   CandidateSearch best = best_for(task, {}, false);
   const RemeshOptions& options = task.options;
   const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.levels < 0 && options.base != BaseSize::Given &&
                           !task.source.density.sizes && !task.source.mirror && !task.base.series && task.source.repaired.faces.size() <= most_faces;
-  if (!best.candidate || !may_change) return best;
+  if (!best.candidate || !may_change || best.candidate->hierarchy.base_count() > most_base_quads) return best;
   Badness least = badness(task, *best.candidate);
   if (!least.quads_are_too_large) return best;
   const TriangleSurface placed = task.source.placement.to_unit(task.source.repaired);

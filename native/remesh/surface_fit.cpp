@@ -10,6 +10,7 @@
 #include "remesh/crossing_faces.h"
 #include "remesh/face_separation.h"
 #include "remesh/mesh_intersections.h"
+#include "remesh/quality.h"
 #include "remesh/surface_samples.h"
 
 namespace hybrid_mesh {
@@ -47,6 +48,32 @@ class SampleFit {
   void run() {
     const std::vector<Vec3> on_surface = mesh_.points;
     for (const FitSample& s : samples_) first_face_.push_back(s.face);
+    const Badness start = badness();
+    samples_to_first_faces();
+    move(on_surface);
+    // Walls far thinner than a quad is wide are no ground for least squares: samples walk to the other side.
+    if (badness().is_worse_than(start)) mesh_.points = on_surface;
+  }
+
+ private:
+  struct Badness {
+    double distance = 0;  // root of the mean square
+    std::size_t inverted = 0;
+    bool is_worse_than(const Badness& o) const { return distance > o.distance + kUnseen && inverted >= o.inverted; }
+  };
+  static constexpr double kUnseen = 1e-6;  // of the surface's size
+
+  Badness badness() {
+    double weight = 0;
+    for (const FitSample& s : samples_) weight += s.weight;
+    return {weight > 0 ? std::sqrt(squared_distance(mesh_) / weight) : 0, inverted_quads(mesh_).size()};
+  }
+
+  void samples_to_first_faces() {
+    for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].face = first_face_[i];
+  }
+
+  void move(const std::vector<Vec3>& on_surface) {
     fit(mesh_, options_.first.rounds);
     // The least squares decide where the mesh lies, the angles where its vertices lie on it; in turns, since each disturbs the other a little.
     for (int turn = 0; turn < options_.turns; ++turn) {
@@ -57,7 +84,6 @@ class SampleFit {
     if (options_.apart) take_apart(on_surface);
   }
 
- private:
   void fit(QuadMesh& mesh, int rounds) {
     FitOptions options = options_.first;
     options.rounds = rounds;
@@ -80,7 +106,7 @@ class SampleFit {
     if (!first.any) return;
     const double before = squared_distance(mesh_);
     QuadMesh again = mesh_;
-    for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].face = first_face_[i];  // they may have walked to the other sheet
+    samples_to_first_faces();  // they may have walked to the other sheet
     fit(again, 1);
     unfold(again);
     const TakenBack second = take_back_crossings(again, mesh_.points, wrong, progress_);

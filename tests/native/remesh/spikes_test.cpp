@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <tuple>
 
 #include "remesh/remesh.h"
 #include "soundness.h"
@@ -116,6 +118,42 @@ TEST(Spikes, ABareRodHasSquareQuads) {
   EXPECT_GE(r.report["final"]["scaled_jacobian"]["p50"].get<double>(), 0.9);
   const double area = std::numbers::pi / 60;  // of unit length
   EXPECT_GE(r.report["base"]["quads"].get<double>(), 3 * 3 / area);
+}
+
+// A closed box of n x n quads a side, of height 1 but for its thickness along z.
+PolygonSoup thin_box(int n, double thickness) {
+  PolygonSoup soup;
+  std::map<std::tuple<int, int, int>, std::int32_t> at;
+  const auto corner = [&](int axis, int side, int i, int j) {
+    int k[3];
+    k[axis] = side * n, k[(axis + 1) % 3] = i, k[(axis + 2) % 3] = j;
+    const auto [found, fresh] = at.try_emplace({k[0], k[1], k[2]}, static_cast<std::int32_t>(soup.points.size()));
+    if (fresh) soup.points.emplace_back(static_cast<double>(k[0]) / n, static_cast<double>(k[1]) / n, thickness * k[2] / n);
+    return found->second;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, 1})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const int d = side ? 0 : 1;  // outwards
+          for (const auto& [x, y] : {std::pair(0, 0), std::pair(1 - d, d), std::pair(1, 1), std::pair(d, 1 - d)})
+            soup.indices.push_back(corner(axis, side, i + x, j + y));
+          soup.offsets.push_back(static_cast<std::int64_t>(soup.indices.size()));
+        }
+  return soup;
+}
+
+// Its sides are a hundred-thousandth as high as its quads are wide, and between their edges these are folded.
+TEST(Spikes, ASheetWithoutThicknessIsNoWreck) {
+  RemeshOptions options;
+  options.vertices = 2000;
+  Context context;
+  const RemeshResult r = remesh(thin_box(30, 1e-5), options, context);
+  testing::expect_sound(r);
+  const double width = std::sqrt(1 / 2000.0);
+  EXPECT_LE(r.report["final"]["hausdorff"].get<double>(), width);
+  EXPECT_LE(r.report["final"]["l2"].get<double>(), 0.1 * width);
+  EXPECT_LE(r.report["final"]["scaled_jacobian"]["inverted"].get<double>(), 0.02);
 }
 
 }  // namespace
