@@ -10,6 +10,7 @@ from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
 from .features.layouts import properties as layout_properties
 from .features.layouts import region_operator
+from .features.levels import mesh_operator
 from .features.levels import operators as level_operators
 from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
@@ -36,6 +37,7 @@ CLASSES = (
     level_operators.HYBRID_MESH_OT_show_reason,
     level_operators.HYBRID_MESH_OT_update_levels,
     level_operators.HYBRID_MESH_OT_reset_level,
+    mesh_operator.HYBRID_MESH_OT_make_mesh,
     layout_operators.HYBRID_MESH_OT_draw_layout,
     layout_operators.HYBRID_MESH_OT_check_layout,
     layout_operators.HYBRID_MESH_OT_show_problem,

@@ -31,6 +31,7 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
             row = layout.row(align=True)
             row.operator("hybrid_mesh.update_levels")
             row.operator("hybrid_mesh.reset_level")
+        layout.operator("hybrid_mesh.make_mesh")
         self._verdict(context, layout, report)
         self._quality(layout, properties.quality_of(collection))
         self._levels(layout, report)

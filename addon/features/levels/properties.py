@@ -3,6 +3,7 @@
 
 import functools
 import json
+import re
 
 import bpy
 import mathutils
@@ -72,6 +73,12 @@ def hierarchy_of(obj):
     hierarchies = (collection for collection in bpy.data.collections if collection.is_property_set("hybrid_mesh"))
     made = [collection for collection in hierarchies if collection.hybrid_mesh.source == obj]
     return max(made, key=lambda collection: collection.name, default=None)
+
+
+def name_of(collection):
+    """The name of what a hierarchy was made of."""
+    source = collection.hybrid_mesh.source
+    return source.name if source is not None else re.sub(r" hierarchy(\.\d+)?$", "", collection.name)
 
 
 def report_of(collection):
