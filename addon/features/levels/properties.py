@@ -27,7 +27,8 @@ class HybridMeshObject(bpy.types.PropertyGroup):
 
 
 class HybridMeshCollection(bpy.types.PropertyGroup):
-    source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed")
+    source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed; none where the hierarchy was imported")
+    file: StringProperty(name="File", description="The file that the hierarchy was imported from", subtype="FILE_PATH")
     preview: PointerProperty(name="Preview", type=bpy.types.Object, description="The object that shows one level at a time")
     report: StringProperty(name="Report", description="What was measured, as JSON")
     matrix: FloatVectorProperty(
