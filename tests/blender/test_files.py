@@ -335,7 +335,30 @@ def test_a_saved_file_goes_on(world, container, tmp_path):
     export_hmesh(world, bpy.context.object, tmp_path / "again.hmesh")
 
 
-def test_the_file_menus_have_entries():
-    operators = module("features.files.operators")
-    for menu, entry in operators.MENUS:
-        assert entry in menu._dyn_ui_initialize()
+def test_the_file_menus_have_entries_while_the_add_on_is_on():
+    registration = module("registration")
+
+    def entries():
+        return [entry in menu._dyn_ui_initialize() for menu, entry in module("features.files.operators").MENUS]
+
+    assert all(entries())
+    registration.unregister()
+    try:
+        assert not any(entries())
+    finally:
+        registration.register()
+    assert all(entries())
+
+
+@pytest.mark.parametrize("name", ["Größe 猫", "a.b c", "x" * 200, os.fsdecode(b"\xff\xfe")])
+def test_names_of_files(world, container, tmp_path, name):
+    path = tmp_path / f"{name}.hmesh"
+    os.rename(container[0], path)
+    _, levels, preview = import_hmesh(world, path)
+    assert preview.name.endswith(".preview") and len(preview.name.encode()) < 64
+    assert preview.name.startswith(name) or len(name) > 60 or not name.isprintable()
+    for kind in ("CONTAINER", "STREAM"):
+        export_hmesh(world, preview, tmp_path / f"{name} again.hmesh", kind=kind)
+        nowhere = str(tmp_path / f"{name} no folder" / "a.hmesh")
+        refused(bpy.ops.hybrid_mesh.export_hmesh, "^Error: a.hmesh: [^\n]*\n?$", filepath=nowhere, kind=kind)
+    refused(bpy.ops.hybrid_mesh.import_hmesh, "No such file", filepath=str(tmp_path / f"{name} missing.hmesh"))

@@ -9,7 +9,7 @@ import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import stepper  # noqa: E402
-from hybrid_mesh import registration  # noqa: E402
+from hybrid_mesh import jobs, registration  # noqa: E402
 from hybrid_mesh.features.levels import panel as level_panel  # noqa: E402
 from hybrid_mesh.features.levels import streams  # noqa: E402
 
@@ -37,6 +37,14 @@ def browse(operator, name, **settings):
             bpy.ops.screen.screenshot(filepath=os.path.join(folder, name + ".png"))
 
 
+def choose(folder, name):
+    """Presses the file browser's button."""
+    with bpy.context.temp_override(**browser()):
+        browser()["space_data"].params.directory = folder.encode()
+        browser()["space_data"].params.filename = name
+        bpy.ops.file.execute()
+
+
 def steps():
     bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
     panels = [cls for cls in registration.CLASSES if issubclass(cls, bpy.types.Panel)]
@@ -57,20 +65,28 @@ def steps():
     yield 0.5
     for bound in ("BYTES", "ERROR"):
         yield from browse(bpy.ops.hybrid_mesh.export_hmesh, f"export_{bound.lower()}", kind="STREAM", bound=bound)
-        with bpy.context.temp_override(**browser()):
-            browser()["space_data"].params.directory = folder.encode()
-            browser()["space_data"].params.filename = f"{bound.lower()}.hmesh"
-            bpy.ops.file.execute()
-        yield from stepper.wait_until(lambda: os.path.exists(os.path.join(folder, f"{bound.lower()}.hmesh")), 60)
+        choose(folder, f"{bound.lower()}.hmesh")
+        # While it is encoded the window goes on, and Esc ends that.
+        yield from stepper.wait_until(jobs.running, 10)
+        stepper.press("ESC")
+        seconds = yield from stepper.wait_until(lambda: not jobs.running() and not jobs._ending, 10)
+        assert seconds < 0.5 and not os.listdir(folder)
         yield 1
+        yield from browse(bpy.ops.hybrid_mesh.export_hmesh, f"export_{bound.lower()}", kind="STREAM", bound=bound)
+        choose(folder, f"{bound.lower()}.hmesh")
+        yield from stepper.wait_until(lambda: os.listdir(folder) == [f"{bound.lower()}.hmesh"] and not jobs.running(), 60)
+        os.remove(os.path.join(folder, f"{bound.lower()}.hmesh"))
+        yield 1
+    # A container is there at once.
+    yield from browse(bpy.ops.hybrid_mesh.export_hmesh, "export_container", kind="CONTAINER")
+    choose(folder, "container.hmesh")
+    yield from stepper.wait_until(lambda: os.listdir(folder) == ["container.hmesh"], 10)
+    yield 1
     with bpy.context.temp_override(**stepper.view()):
         assert bpy.ops.hybrid_mesh.export_hmesh(filepath=path, kind="STREAM") == {"FINISHED"}
     stepper.empty_scene()
     yield from browse(bpy.ops.hybrid_mesh.import_hmesh, "import", part="PREFIX", most_bytes=800)
-    with bpy.context.temp_override(**browser()):
-        browser()["space_data"].params.directory = folder.encode()
-        browser()["space_data"].params.filename = "ball.hmesh"
-        bpy.ops.file.execute()
+    choose(folder, "ball.hmesh")
     yield from stepper.wait_until(lambda: "ball.preview" in bpy.data.objects, 60)
     yield 1
     collection = bpy.data.collections["ball hierarchy"]

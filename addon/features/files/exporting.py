@@ -2,10 +2,16 @@
 """Hierarchies of the scene as .hmesh files."""
 
 import json
+import os
+import tempfile
 
 import numpy
 
 from ...bridge import arrays
+from ...bridge.names import readable
+from ...core import hierarchy_files
+from ...core.process import ProcessJob
+from ...core.tasks import Task
 from ...core.version import VERSION
 from ..levels import editing, kept
 from ..levels import properties as hierarchy_properties
@@ -19,10 +25,10 @@ def save_container(collection, path):
     at_hand.hierarchy.save(path, json.dumps(_metadata(collection, at_hand)))
 
 
-def save_stream(collection, path, most_bytes=0, error=0.0, exact=False):
-    """Writes a hierarchy as a stream, where its objects stand in the world. The settings are the native save_stream()'s.
+def stream_task(collection, path, most_bytes=0, error=0.0, exact=False):
+    """A task that writes a hierarchy as a stream, where its objects stand in the world now. The settings are the native save_stream()'s.
 
-    Raises ValueError and the native errors.
+    It works in a process of its own, since save_stream() cannot be cancelled from here. Raises ValueError.
     """
     at_hand = kept.at_hand(collection)
     motion = _placement(collection, at_hand.matrix) @ numpy.linalg.inv(at_hand.matrix)
@@ -31,7 +37,15 @@ def save_stream(collection, path, most_bytes=0, error=0.0, exact=False):
         if arrays.mirrors(motion):
             raise ValueError(f"{collection.name} was mirrored since it was made, and a stream cannot turn faces over: write a container")
         hierarchy = _moved(hierarchy, motion)
-    hierarchy.save_stream(path, most_bytes=most_bytes, error=error, exact=exact)
+    job = {"kind": "encode", "output": path, "bytes": most_bytes, "error": error, "exact": exact, "source": ""}
+
+    def start():
+        folder = tempfile.TemporaryDirectory()
+        given = os.path.join(folder.name, "given" + hierarchy_files.EXTENSION)
+        hierarchy.save(given)
+        return ProcessJob({**job, "path": given}, "encoding", folder.cleanup)
+
+    return Task(readable(os.path.basename(path)), start)
 
 
 def not_carried(collection):

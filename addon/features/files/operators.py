@@ -8,8 +8,10 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatPrope
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ...bridge import objects, view
+from ...bridge.names import readable
 from ...core import hierarchy_files
 from ...core.native import expected, explain
+from ...jobs import NativeJobOperator
 from ..levels import properties as hierarchy_properties
 from . import exporting, importing
 
@@ -75,7 +77,7 @@ class HYBRID_MESH_OT_import_hmesh(bpy.types.Operator, ImportHelper):
         return [bpy.path.abspath(os.path.join(self.directory, name)) for name in names] or [bpy.path.abspath(self.filepath)]
 
 
-class HYBRID_MESH_OT_export_hmesh(bpy.types.Operator, ExportHelper):
+class HYBRID_MESH_OT_export_hmesh(ExportHelper, NativeJobOperator):
     """Write the active hybrid mesh to a file"""
 
     bl_idname = "hybrid_mesh.export_hmesh"
@@ -96,6 +98,9 @@ class HYBRID_MESH_OT_export_hmesh(bpy.types.Operator, ExportHelper):
         description="Leave all vertices where they are. Else they are moved to where fewer bytes come as close to the surface that the maps know of",
     )  # fmt: skip
 
+    _browsed = False
+    _edited = ()  # names of objects with what the file does not have
+
     @classmethod
     def poll(cls, context):
         if hierarchy_properties.hierarchy_of(objects.active(context)) is None:
@@ -107,6 +112,7 @@ class HYBRID_MESH_OT_export_hmesh(bpy.types.Operator, ExportHelper):
         collection = hierarchy_properties.hierarchy_of(objects.active(context))
         folder = os.path.dirname(bpy.data.filepath)
         self.filepath = os.path.join(folder, bpy.path.clean_name(hierarchy_properties.name_of(collection)) + self.filename_ext)
+        self._browsed = True
         return super().invoke(context, event)
 
     def draw(self, context):
@@ -123,31 +129,34 @@ class HYBRID_MESH_OT_export_hmesh(bpy.types.Operator, ExportHelper):
             layout.prop(self, "exact")
 
     def execute(self, context):
-        collection = hierarchy_properties.hierarchy_of(objects.active(context))
-        path = bpy.path.abspath(self.filepath)
+        if self.kind == "STREAM":
+            return self.run_modal(context) if self._browsed and not bpy.app.background else super().execute(context)
+        collection, path = self._chosen(context)
         try:
-            with _waiting(context):
-                self._write(collection, path)
-                size = os.path.getsize(path)
+            exporting.save_container(collection, path)
         except Exception as error:
             self.report({"ERROR"}, _line(error, path))
             return {"CANCELLED"}
-        for name in exporting.not_carried(collection):
-            self.report({"WARNING"}, f"{name} was edited since the levels were last updated; the file does not have that")
-        self.report({"INFO"}, f"{os.path.basename(path)}: {size:,} bytes{self._asked_for()}")
+        self._conclude_with(path)
         return {"FINISHED"}
 
-    def _write(self, collection, path):
-        if self.kind == "CONTAINER":
-            exporting.save_container(collection, path)
-            return
-        exporting.save_stream(
-            collection,
-            path,
-            most_bytes=self.most_bytes if self.bound == "BYTES" else 0,
-            error=self.error if self.bound == "ERROR" else 0.0,
-            exact=self.exact,
-        )
+    def prepare(self, context):
+        collection, path = self._chosen(context)
+        most_bytes, error = self.most_bytes if self.bound == "BYTES" else 0, self.error if self.bound == "ERROR" else 0.0
+        return [exporting.stream_task(collection, path, most_bytes, error, self.exact)]
+
+    def finish(self, context, results):
+        self._conclude_with(bpy.path.abspath(self.filepath))
+
+    def _chosen(self, context):
+        collection = hierarchy_properties.hierarchy_of(objects.active(context))
+        self._edited = exporting.not_carried(collection)
+        return collection, bpy.path.abspath(self.filepath)
+
+    def _conclude_with(self, path):
+        for name in self._edited:
+            self.report({"WARNING"}, f"{name} was edited since the levels were last updated; the file does not have that")
+        self.report({"INFO"}, f"{readable(os.path.basename(path))}: {os.path.getsize(path):,} bytes{self._asked_for()}")
 
     def _asked_for(self):
         if self.kind == "CONTAINER" or self.bound == "NONE":
@@ -171,7 +180,7 @@ def _line(error, path):
     """One line for people that names the file; the console gets the rest of what was not foreseen."""
     if not isinstance(error, OSError) and not expected(error):
         traceback.print_exception(error)
-    return f"{os.path.basename(path)}: {explain(error, path)}"
+    return readable(f"{os.path.basename(path)}: {explain(error, path)}")
 
 
 @contextlib.contextmanager
