@@ -6,6 +6,7 @@ import traceback
 
 import bpy
 
+from .bridge.names import readable
 from .core.native import NativeMissing, expected, explain, native
 from .core.tasks import TaskRun
 
@@ -49,6 +50,10 @@ class NativeJobOperator(bpy.types.Operator):
     def invoke(self, context, event):
         if bpy.app.background or context.window is None:
             return self.execute(context)
+        return self.run_modal(context)
+
+    def run_modal(self, context):
+        """Starts the work and returns, as invoke() does."""
         if running():
             self.report({"WARNING"}, "Another job is running; Esc ends it")
             return {"CANCELLED"}
@@ -106,7 +111,7 @@ class NativeJobOperator(bpy.types.Operator):
         if not made and not errors:
             errors.append("There was nothing to do")
         if errors:
-            self.report({"ERROR"}, "\n".join(errors))
+            self.report({"ERROR"}, readable("\n".join(errors)))
         return {"FINISHED"} if made else {"CANCELLED"}
 
     def _attempt(self, errors, function, *arguments):
@@ -122,7 +127,8 @@ class NativeJobOperator(bpy.types.Operator):
             return False
 
     def _show(self, context):
-        text = f"{self._run.status}   {self._run.progress:.0%}   (Esc cancels)"
+        progress = f"   {self._run.progress:.0%}" if self._run.progress > 0 else ""  # Not all work knows how far it is.
+        text = f"{self._run.status}{progress}   (Esc cancels)"
         if text != self._shown:  # Every change is a redraw.
             self._shown = text
             context.workspace.status_text_set(text)

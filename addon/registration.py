@@ -6,14 +6,17 @@ import contextlib
 import bpy
 
 from . import compat, jobs
+from .features.files import operators as file_operators
 from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
 from .features.layouts import properties as layout_properties
 from .features.layouts import region_operator
+from .features.levels import mesh_operator
 from .features.levels import operators as level_operators
 from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
 from .features.levels import stored as stored_levels
+from .features.levels import streams as level_streams
 from .features.remesh import operators as remesh_operators
 from .features.remesh import panel as remesh_panel
 from .features.remesh import properties as remesh_properties
@@ -24,6 +27,7 @@ from .features.topology import properties as topology_properties
 CLASSES = (
     level_properties.HybridMeshObject,
     level_properties.HybridMeshCollection,
+    level_streams.HybridMeshStream,
     layout_properties.HybridMeshProblem,
     layout_properties.HybridMeshLayout,
     layout_properties.HybridMeshRegion,
@@ -36,6 +40,9 @@ CLASSES = (
     level_operators.HYBRID_MESH_OT_show_reason,
     level_operators.HYBRID_MESH_OT_update_levels,
     level_operators.HYBRID_MESH_OT_reset_level,
+    mesh_operator.HYBRID_MESH_OT_make_mesh,
+    file_operators.HYBRID_MESH_OT_import_hmesh,
+    file_operators.HYBRID_MESH_OT_export_hmesh,
     layout_operators.HYBRID_MESH_OT_draw_layout,
     layout_operators.HYBRID_MESH_OT_check_layout,
     layout_operators.HYBRID_MESH_OT_show_problem,
@@ -55,7 +62,7 @@ CLASSES = (
     topology_panel.HYBRID_MESH_PT_topology,
 )
 # Whose property groups what of Blender's has: type, attribute, group.
-PROPERTIES = (*level_properties.PROPERTIES, *layout_properties.PROPERTIES, *topology_properties.PROPERTIES, *remesh_properties.PROPERTIES)
+PROPERTIES = (*level_properties.PROPERTIES, *level_streams.PROPERTIES, *layout_properties.PROPERTIES, *topology_properties.PROPERTIES, *remesh_properties.PROPERTIES)
 
 _registered = contextlib.ExitStack()  # how to undo it all, the last first
 
@@ -68,6 +75,9 @@ def register():
         for owner, name, group in PROPERTIES:
             setattr(owner, name, bpy.props.PointerProperty(type=group))
             undo.callback(delattr, owner, name)
+        for menu, entry in file_operators.MENUS:
+            menu.append(entry)
+            undo.callback(menu.remove, entry)
         jobs.register()
         undo.callback(jobs.unregister)
         stored_levels.register()

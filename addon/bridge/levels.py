@@ -14,6 +14,7 @@ from .names import with_suffix
 LEVEL_INPUT = "Level"
 PREVIEW_MODIFIER = "Hybrid Mesh Level"
 SUBDIVISION_MODIFIER = "Subdivision Preview"
+_OBJECT_NODE = "GeometryNodeObjectInfo"
 
 
 @dataclass
@@ -106,6 +107,15 @@ def set_level(preview, level):
     preview.update_tag()
 
 
+def shown_object(preview):
+    """The object whose mesh a preview shows; None where that object, or the modifier, is gone."""
+    modifier = preview.modifiers.get(PREVIEW_MODIFIER)
+    if modifier is None or modifier.node_group is None:
+        return None
+    objects = [node.inputs["Object"].default_value for node in modifier.node_group.nodes if node.bl_idname == _OBJECT_NODE]
+    return objects[min(max(level_of(preview), 0), len(objects) - 1)] if objects else None
+
+
 def draw_level(layout, preview):
     """The Level input as a slider."""
     modifier = preview.modifiers.get(PREVIEW_MODIFIER)
@@ -143,7 +153,7 @@ def _level_switch(name, levels):
     entry.location = (-400, 0)
     shown = None
     for number, obj in enumerate(levels):
-        info = nodes.new("GeometryNodeObjectInfo")
+        info = nodes.new(_OBJECT_NODE)
         info.label = obj.name
         info.transform_space = "ORIGINAL"
         info.inputs["Object"].default_value = obj

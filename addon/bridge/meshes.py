@@ -22,6 +22,10 @@ class SourceError(ValueError):
     """A mesh object that cannot be remeshed; the message says why."""
 
 
+class MeshError(RuntimeError):
+    """Arrays that are no mesh that Blender can hold."""
+
+
 @dataclass
 class Source:
     """What was read of an object: its evaluated surface as triangles in world space, and how to put a result back."""
@@ -70,7 +74,7 @@ def read_source(obj, depsgraph, collect=None, density=None):
 
 
 def new_mesh(name, made, matrix):
-    """A mesh data-block from a level's MeshDict (world space), in the space of an object with this matrix."""
+    """A mesh data-block from a level's MeshDict (world space), in the space of an object with this matrix. Raises MeshError."""
     points = in_object(made["points"], matrix)
     offsets = numpy.asarray(made["offsets"], dtype=numpy.int64)
     indices = numpy.asarray(made["indices"], dtype=numpy.int32)
@@ -88,7 +92,7 @@ def new_mesh(name, made, matrix):
     if mesh.validate():
         # What the native side promises does not hold; better said here than seen as a damaged mesh.
         bpy.data.meshes.remove(mesh)
-        raise RuntimeError(f"{name} is not a valid mesh")
+        raise MeshError(f"{name} is not a valid mesh")
     if "uv" in made:
         add_uv(mesh, PATCH_UV, numpy.asarray(made["uv"])[corners])
     if "sharp" in made:

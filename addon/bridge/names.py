@@ -9,3 +9,8 @@ def with_suffix(name, suffix):
     """NAME and a suffix, with NAME shortened at a character so that the suffix is never what is cut off."""
     room = LIMIT - NUMBER - len(suffix.encode())
     return name.encode("utf-8", errors="replace")[: max(room, 0)].decode("utf-8", errors="ignore") + suffix
+
+
+def readable(text):
+    """A text that may have names of files in it, without what is no character: Blender refuses to report that."""
+    return text.encode("utf-8", errors="replace").decode("utf-8")

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts objects where another object stands."""
+"""Puts objects where another object stands, or where a matrix says."""
+
+import mathutils
+import numpy
 
 from . import objects
+from .arrays import world_matrix
 
 
 def same_place(source):
@@ -26,6 +30,25 @@ def same_place(source):
             obj.matrix_world = source.matrix_world
 
     return place
+
+
+def by_matrix(matrix, placement):
+    """How objects are put where a file has them: (the matrix that their meshes are to be made with, a function that puts an object there).
+
+    matrix: from the space of the objects to that of the points; placement: to the world; each 16 numbers, row by row. What no object can have
+    (shear) goes into the mesh. Raises MatrixError.
+    """
+    with numpy.errstate(over="ignore", invalid="ignore"):
+        matrix, placement = (world_matrix(numpy.reshape(values, (4, 4))) for values in (matrix, placement))
+    stands = mathutils.Matrix.LocRotScale(*mathutils.Matrix(placement).decompose())
+    possible = numpy.array(stands, dtype=numpy.float64)
+    if numpy.abs(possible - placement)[:3, :3].max() > 1e-5 * numpy.abs(placement[:3, :3]).max():
+        matrix = matrix @ numpy.linalg.inv(placement) @ possible
+
+    def place(obj):
+        obj.matrix_basis = stands
+
+    return matrix, place
 
 
 def _animated(obj):

@@ -12,11 +12,13 @@ def to_object_mode(context):
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def select_only(context, obj):
+def select_only(context, *chosen):
+    """Selects these objects and nothing else; the last one is active."""
     for other in list(context.view_layer.objects.selected):
         other.select_set(False)
-    obj.select_set(True)
-    context.view_layer.objects.active = obj
+    for obj in chosen:
+        obj.select_set(True)
+    context.view_layer.objects.active = chosen[-1]
 
 
 def look_at(context, surface, place, size):

@@ -105,6 +105,45 @@ class Processes:
                 pass
 
 
+class ProcessJob:
+    """A child's work as a job, as native ones are, but without progress: for what would not end when it is told to, did it run here."""
+
+    progress = 0.0
+
+    def __init__(self, job, stage, cleanup=None):
+        """job, answer: as Processes.run() has them; stage: what people read meanwhile; cleanup(): is called when the child has ended."""
+        self.stage = stage
+        self._processes, self._answer, self._error = Processes(), None, None
+        self._thread = threading.Thread(target=self._work, args=(job, cleanup), daemon=True)
+        self._thread.start()
+
+    def _work(self, job, cleanup):
+        try:
+            self._answer = self._processes.run(job)
+        except Exception as error:  # result() raises it.
+            self._error = error
+        finally:
+            if cleanup is not None:
+                cleanup()
+
+    @property
+    def done(self):
+        return not self._thread.is_alive()
+
+    def cancel(self):
+        self._processes.end()
+
+    def wait(self, timeout_s=None):
+        self._thread.join(timeout_s)
+        return self.done
+
+    def result(self):
+        self.wait()
+        if self._error is not None:
+            raise self._error
+        return self._answer
+
+
 def _read_all(stream, lines):
     with stream:
         lines.extend(stream)

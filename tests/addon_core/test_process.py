@@ -32,3 +32,35 @@ def test_nothing_stays_open(monkeypatch):
         assert process.Processes().run({}) == {}
         gc.collect()
     assert [str(one.message) for one in seen] == []
+
+
+def ended(job):
+    return job.wait(30)
+
+
+def test_a_child_as_a_job(monkeypatch):
+    child(monkeypatch, "sys.stdin.readline()\nprint(mark + '{\"bytes\": 3}', flush=True)")
+    cleaned = []
+    job = process.ProcessJob({}, "encoding", lambda: cleaned.append(True))
+    assert job.stage == "encoding" and ended(job) and job.done
+    assert job.result() == job.result() == {"bytes": 3} and cleaned == [True]
+
+
+def test_a_job_that_fails_says_why(monkeypatch):
+    child(monkeypatch, "print(mark + '{\"error\": \"too few bytes\"}', flush=True)")
+    cleaned = []
+    job = process.ProcessJob({}, "encoding", lambda: cleaned.append(True))
+    with pytest.raises(process.WorkerFailed, match="too few bytes"):
+        job.result()
+    assert cleaned == [True]
+
+
+def test_a_job_ends_when_it_is_cancelled(monkeypatch):
+    child(monkeypatch, "import time\ntime.sleep(600)")
+    cleaned = []
+    job = process.ProcessJob({}, "encoding", lambda: cleaned.append(True))
+    assert not job.wait(0.2) and not job.done
+    job.cancel()
+    assert ended(job) and cleaned == [True]
+    with pytest.raises(process.WorkerFailed, match="cancelled"):
+        job.result()

@@ -59,6 +59,8 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
         level = properties.surface_of(objects.active(context), context.scene)
         hierarchy = level.hybrid_mesh.hierarchy
         source = hierarchy.hybrid_mesh.source
+        if hierarchy.hybrid_mesh.file:
+            raise ValueError(f"{hierarchy.name} was imported: there is no object that it was made of to lay the region out on")
         if source is None or not objects.in_scene(source, context.scene):
             raise ValueError(f"{hierarchy.name}: the object that it was made of is gone from the scene")
         plan = hierarchy_properties.plan_of(hierarchy)

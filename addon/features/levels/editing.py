@@ -16,12 +16,12 @@ def update(level, coarser):
     Raises ValueError with a line for people, and the native errors; then nothing has changed.
     """
     collection = level.hybrid_mesh.hierarchy
-    at_hand = _at_hand(collection)
-    shown = _Shown(collection, at_hand, level)
+    at_hand = kept.at_hand(collection)
+    shown = Shown(collection, at_hand, level)
     points = shown.edited_points(level)
     if points is None:
         raise ValueError(f"{level.name} is as it was: there is nothing to carry to the other levels")
-    pending = [obj.name for obj in shown.objects if obj != level and shown.edited_points(obj) is not None]
+    pending = shown.edited(but=level)
     if pending:
         raise ValueError(f"{', '.join(pending)} was edited, too, and would lose that: update or reset it first")
     hierarchy = at_hand.hierarchy.copy()
@@ -35,26 +35,22 @@ def update(level, coarser):
 def reset(level):
     """Takes back what was edited of a level's object since the levels were last updated. Returns whether there was anything. Raises ValueError."""
     collection = level.hybrid_mesh.hierarchy
-    at_hand = _at_hand(collection)
-    return _Shown(collection, at_hand, level).show(level, at_hand.hierarchy)
+    at_hand = kept.at_hand(collection)
+    return Shown(collection, at_hand, level).show(level, at_hand.hierarchy)
 
 
-def _at_hand(collection):
-    found = kept.find(collection)
-    if found is None:
-        raise ValueError(f"{collection.name} comes of a session that did not save it, or of long ago: remesh its source again to edit its levels")
-    return found
+class Shown:
+    """The level objects of a hierarchy beside the native one that they show, as it was before. Raises ValueError where one cannot be changed.
 
+    level: the one that is meant where there are several objects of a level.
+    """
 
-class _Shown:
-    """The level objects of a hierarchy beside the native one that they show, as it was before."""
-
-    def __init__(self, collection, at_hand, level):
+    def __init__(self, collection, at_hand, level=None):
         self._hierarchy, self._matrix = at_hand.hierarchy, at_hand.matrix
         self._points = {}
         names = at_hand.hierarchy.level_names
         by_level = {}
-        # A copy of a level's object is none, unless it is the one that was asked for.
+        # A copy of a level's object is none, unless it is the one that is meant.
         for obj in (level, *collection.objects):
             if is_level(obj) and obj.hybrid_mesh.hierarchy == collection and obj.type == "MESH":
                 by_level.setdefault(obj.hybrid_mesh.level, obj)
@@ -86,6 +82,10 @@ class _Shown:
         if not touched.any():
             return None
         return numpy.where(touched[:, None], meshes.in_world(places, self._matrix), own)
+
+    def edited(self, but=None):
+        """The names of the objects that were edited since."""
+        return [obj.name for obj in self.objects if obj != but and self.edited_points(obj) is not None]
 
     def show(self, obj, hierarchy):
         """Puts an object's vertices where a hierarchy has them. Returns whether any has moved."""

@@ -44,6 +44,20 @@ def find(collection):
     return kept
 
 
+def at_hand(collection):
+    """What is kept of a collection; raises ValueError with a line for people where that is gone."""
+    found = find(collection)
+    if found is None:
+        again = "remesh its source again" if collection.hybrid_mesh.source is not None else "import its file again"
+        raise ValueError(f"{collection.name} comes of a session that did not save it, or of long ago: {again}")
+    return found
+
+
+def drop(collection):
+    """Forgets what is kept of a collection in memory."""
+    _kept.pop(collection.hybrid_mesh.token, None)
+
+
 def of_token(token):
     """What is kept in memory under a token, or None."""
     return _kept.get(token)

@@ -4,7 +4,7 @@ import bpy
 from ...bridge import levels
 from ...core import report as reports
 from ..wrapping import draw_wrapped
-from . import properties
+from . import properties, streams
 
 
 class HYBRID_MESH_PT_levels(bpy.types.Panel):
@@ -31,9 +31,20 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
             row = layout.row(align=True)
             row.operator("hybrid_mesh.update_levels")
             row.operator("hybrid_mesh.reset_level")
+        self._stream(layout, collection)
+        layout.operator("hybrid_mesh.make_mesh")
         self._verdict(context, layout, report)
         self._quality(layout, properties.quality_of(collection))
         self._levels(layout, report)
+
+    def _stream(self, layout, collection):
+        if not streams.has_stream(collection):
+            return
+        stream = collection.hybrid_mesh_stream
+        row = layout.split(factor=0.6)
+        row.enabled = streams.is_shown(collection)
+        row.prop(stream, "bytes")
+        row.label(text=f"of {stream.size:,}" if row.enabled else "edited since")
 
     def _verdict(self, context, layout, report):
         if reports.verdict(report) == "good":

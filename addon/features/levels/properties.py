@@ -3,6 +3,7 @@
 
 import functools
 import json
+import re
 
 import bpy
 import mathutils
@@ -26,7 +27,8 @@ class HybridMeshObject(bpy.types.PropertyGroup):
 
 
 class HybridMeshCollection(bpy.types.PropertyGroup):
-    source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed")
+    source: PointerProperty(name="Source", type=bpy.types.Object, description="The object that was remeshed; none where the hierarchy was imported")
+    file: StringProperty(name="File", description="The file that the hierarchy was imported from", subtype="FILE_PATH")
     preview: PointerProperty(name="Preview", type=bpy.types.Object, description="The object that shows one level at a time")
     report: StringProperty(name="Report", description="What was measured, as JSON")
     matrix: FloatVectorProperty(
@@ -72,6 +74,12 @@ def hierarchy_of(obj):
     hierarchies = (collection for collection in bpy.data.collections if collection.is_property_set("hybrid_mesh"))
     made = [collection for collection in hierarchies if collection.hybrid_mesh.source == obj]
     return max(made, key=lambda collection: collection.name, default=None)
+
+
+def name_of(collection):
+    """The name of what a hierarchy was made of."""
+    source = collection.hybrid_mesh.source
+    return source.name if source is not None else re.sub(r" hierarchy(\.\d+)?$", "", collection.name)
 
 
 def report_of(collection):

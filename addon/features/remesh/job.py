@@ -3,16 +3,14 @@
 
 import json
 
-import bpy
-
-from ...bridge import arrays, density, levels, meshes, objects, placement, transfer
+from ...bridge import arrays, density, meshes, objects, placement, transfer, view
 from ...core import loops
 from ...core import report as reports
 from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
 from ...jobs import NativeJobOperator
-from ..levels import kept
+from ..levels import hierarchies, kept
 from ..levels import properties as hierarchy_properties
 from ..topology import properties as topology_properties
 
@@ -60,9 +58,9 @@ class RemeshJobOperator(NativeJobOperator):
                 built.append(build_hierarchy(context, obj, result, *task.note))
         except BaseException:
             for one in built:
-                _remove(one)
+                hierarchies.remove(one)
             raise
-        _select(context, [one.preview for one in built])
+        view.select_only(context, *(one.preview for one in built))
         if self.hides_source(context):
             for obj in sources:
                 if objects.in_view_layer(obj, context.view_layer):
@@ -94,37 +92,14 @@ def _refusal(error):
 
 def build_hierarchy(context, obj, result, source, settings):
     """The objects of a task's result, with the report and the plan; returns levels.Built. source, settings: the task's note."""
-    hierarchy = result.hierarchy
-    parts = [(name, hierarchy.level(name)) for name in hierarchy.level_names]
+    report = json.loads(result.report)
+    report["version"] = VERSION
+    report["settings"] = settings.reported()
     repaired = result.repaired()
-    carry = transfer.carrier(source, repaired)
-    built = levels.build(obj.name, parts, source.matrix, context.scene, placement.same_place(obj), obj, carry)
-    try:
-        report = json.loads(result.report)
-        report["version"] = VERSION
-        report["settings"] = settings.reported()
-        hierarchy_properties.describe(built, obj, report, result.plan, map(hierarchy.operation, range(hierarchy.operation_count)))
-        levels.show_preview_only(built)
-        kept.keep(built.collection, kept.Kept(hierarchy, source.matrix, source=source, settings=settings, repaired=repaired))
-    except BaseException:
-        _remove(built)
-        raise
-    return built
-
-
-def _remove(built):
-    plan = built.collection.hybrid_mesh.plan
-    levels.remove(built)
-    if plan is not None:
-        bpy.data.texts.remove(plan)
-
-
-def _select(context, objects):
-    for obj in list(context.view_layer.objects.selected):
-        obj.select_set(False)
-    for obj in objects:
-        obj.select_set(True)
-    context.view_layer.objects.active = objects[-1]
+    at_hand = kept.Kept(result.hierarchy, source.matrix, source=source, settings=settings, repaired=repaired)
+    return hierarchies.build(
+        context, obj.name, at_hand, report, plan=result.plan, place=placement.same_place(obj), source=obj, carry=transfer.carrier(source, repaired)
+    )
 
 
 def _line(built):
