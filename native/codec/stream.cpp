@@ -216,7 +216,10 @@ HybridMesh decode_stream(const std::uint8_t* data, std::size_t size) {
   for (std::size_t j = 0; j < levels.size(); ++j) {
     placed.vertex = j > 0 ? steps[j - 1].fine().vertex : mesh.level_mesh(0).vertex;
     placed.points = std::move(levels[j]);
-    for (Vec3& point : placed.points) point = stream.content.placement.outward(point);
+    for (Vec3& point : placed.points) {
+      point = stream.content.placement.outward(point);
+      if (!point.allFinite()) corrupt("a vertex farther away than numbers go");
+    }
     mesh.set_level_positions(static_cast<int>(j), placed);
   }
   mesh.set_final_positions(placed);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 #include <set>
+#include <string>
 
 #include "base/error.h"
 #include "codec/base_points.h"
@@ -277,6 +278,17 @@ TEST(Stream, WhatIsNoStreamIsRefused) {
   ASSERT_EQ(off.apply(cube_on(off, off.first_child(1))), "");
   ASSERT_EQ(off.set_enabled({false}), "");
   EXPECT_THROW(encoded(off), Error);
+}
+
+// Found by fuzzing: a quad with finer ones on three sides. A tree need not be balanced, but can be.
+TEST(Stream, ATreeThatIsNotBalancedIsSoundOnceItIs) {
+  const std::string found = std::string(35, 'V') + "64OFF\n1 0 0\n0 0 0 1\n";
+  Bytes bytes = {'H', 'M', 'w', 1};
+  bytes.insert(bytes.end(), found.begin(), found.end());
+  HybridMesh mesh = decoded(bytes);
+  EXPECT_EQ(find_defects(mesh).size(), 1u);
+  mesh.balance();
+  EXPECT_TRUE(find_defects(mesh).empty());
 }
 
 // A stream of version 1: what was written once is read for ever. It is only replaced together with the version.
