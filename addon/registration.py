@@ -62,7 +62,13 @@ CLASSES = (
     topology_panel.HYBRID_MESH_PT_topology,
 )
 # Whose property groups what of Blender's has: type, attribute, group.
-PROPERTIES = (*level_properties.PROPERTIES, *level_streams.PROPERTIES, *layout_properties.PROPERTIES, *topology_properties.PROPERTIES, *remesh_properties.PROPERTIES)
+PROPERTIES = (
+    *level_properties.PROPERTIES,
+    *level_streams.PROPERTIES,
+    *layout_properties.PROPERTIES,
+    *topology_properties.PROPERTIES,
+    *remesh_properties.PROPERTIES,
+)
 
 _registered = contextlib.ExitStack()  # how to undo it all, the last first
 

@@ -111,11 +111,19 @@ HybridMesh StructureCoder::code() {
     HybridMesh mesh = grow(std::move(base), *this, most_stream_quads);
     match(mesh);
     mesh.set_closure(closure_);
+    check_balance(mesh);
     return mesh;
   } catch (const Error& error) {
     if (!given_ && error.code() == ErrorCode::InvalidInput) corrupt(error.what());
     throw;
   }
+}
+
+// How faces are closed where they have hanging nodes is said of balanced leaves alone.
+void StructureCoder::check_balance(HybridMesh& mesh) const {
+  std::vector<int> refined;
+  if (!uniform_) mesh.balance(&refined);
+  if (!refined.empty()) throw Error(ErrorCode::InvalidInput, "the hierarchy is not balanced");
 }
 
 HybridMesh StructureCoder::code_base() {

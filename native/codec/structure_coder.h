@@ -25,6 +25,7 @@ class StructureCoder final : private Growth {
   VertexId given_vertex(VertexId vertex) const;
 
  private:
+  void check_balance(HybridMesh& mesh) const;
   HybridMesh code_base();
   void code_sharp_sides(HybridMesh& mesh);
   void code_shape();

@@ -280,15 +280,22 @@ TEST(Stream, WhatIsNoStreamIsRefused) {
   EXPECT_THROW(encoded(off), Error);
 }
 
-// Found by fuzzing: a quad with finer ones on three sides. A tree need not be balanced, but can be.
-TEST(Stream, ATreeThatIsNotBalancedIsSoundOnceItIs) {
+TEST(Stream, TreesThatAreNotBalancedAreRefused) {
+  // Found by fuzzing: a quad with finer ones on three sides.
   const std::string found = std::string(35, 'V') + "64OFF\n1 0 0\n0 0 0 1\n";
   Bytes bytes = {'H', 'M', 'w', 1};
   bytes.insert(bytes.end(), found.begin(), found.end());
-  HybridMesh mesh = decoded(bytes);
-  EXPECT_EQ(find_defects(mesh).size(), 1u);
-  mesh.balance();
-  EXPECT_TRUE(find_defects(mesh).empty());
+  EXPECT_EQ(refusal(bytes), ErrorCode::CorruptStream);
+  HybridMesh mesh = grid(2, 1);
+  mesh.refine_uniform(1);
+  mesh.refine(mesh.first_child(0) + 1);
+  mesh.refine(mesh.first_child(mesh.first_child(0) + 1) + 1);
+  try {
+    encoded(mesh);
+    ADD_FAILURE() << "written";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidInput);
+  }
 }
 
 // A stream of version 1: what was written once is read for ever. It is only replaced together with the version.

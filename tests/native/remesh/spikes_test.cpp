@@ -143,7 +143,7 @@ PolygonSoup thin_box(int n, double thickness) {
   return soup;
 }
 
-// Its sides are a hundred-thousandth as high as its quads are wide, and between their edges these are folded.
+// Its sides are far lower than quads are wide, and those between their edges are folded.
 TEST(Spikes, ASheetWithoutThicknessIsNoWreck) {
   RemeshOptions options;
   options.vertices = 2000;
