@@ -203,6 +203,14 @@ std::vector<double> cell_areas(const PatchMap& map, int n) {
   return areas;
 }
 
+std::array<Vec3, 4> corner_positions(const PatchMap& map) {
+  std::array<Vec3, 4> out;
+  for (std::size_t v = 0; v < map.uv.size(); ++v)
+    for (int i = 0; i < 4; ++i)
+      if (map.is_on_side(v, i) && map.is_on_side(v, (i + 3) % 4)) out[i] = map.positions[v];
+  return out;
+}
+
 const char* find_map_defect(const PatchMap& map) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   using Point = Kernel::Point_2;

@@ -31,6 +31,9 @@ struct PatchMap {
   bool is_on_side(std::size_t v, int side) const { return (side % 2 == 0 ? uv[v].y() : uv[v].x()) == (side == 0 || side == 3 ? 0.0 : 1.0); }
 };
 
+// Where its corners lie.
+std::array<Vec3, 4> corner_positions(const PatchMap& map);
+
 // What a map gives at a point of the square.
 struct PatchSample {
   Vec3 position;

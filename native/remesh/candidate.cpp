@@ -108,14 +108,14 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
   origin.script = map->script;
   // Tried with one operation and another, but of one map, which by then has made room.
   const Construction constructed = construct(task, working, std::move(*map));
-  const auto made_with = [&](std::int64_t most_quads, bool skin) {
+  const auto made_with = [&](const OpeningBounds& bounds, bool skin) {
     LateTopology late;
     // What quads need is no part of a plan, which could not make the base again.
     const std::optional<Plan::Origin> again = task.need ? std::nullopt : std::optional(origin);
     Candidate c = assemble_candidate(task, working, constructed, again, [&](Construction& made) {
       if (!working.features.empty()) return std::vector<Plan::Region>();  // a region's quads would not keep them
       std::vector<Plan::Region> regions = grow_skin(made, task, skin ? skin_options(task, budget, base, request) : SkinOptions());
-      late = open_late(made, task, most_quads);
+      late = open_late(made, task, bounds);
       regions.insert(regions.end(), late.regions.begin(), late.regions.end());
       return regions;
     });
@@ -123,16 +123,16 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
     c.waited = std::move(late.waited);
     return c;
   };
-  const std::int64_t most = most_quads_to_open(options, budget.vertices);
-  Found<Candidate> with_skin = found([&] { return made_with(most, true); });
+  const OpeningBounds bounds = opening_bounds(options, budget.vertices);
+  Found<Candidate> with_skin = found([&] { return made_with(bounds, true); });
   // Beside its mirror image a half cannot have every operation.
   if (!with_skin && !(task.source.mirror && !options.semi_regular)) throw NoMap(with_skin.reason);
-  Candidate c = with_skin ? std::move(*with_skin) : made_with(most, false);
+  Candidate c = with_skin ? std::move(*with_skin) : made_with(bounds, false);
   c.lost_operations = with_skin.reason;
   if (options.refinement == Refinement::Uniform) return c;
   // Of a level as fine as the last one that something opens on, or grows skin on, it may be too much.
   for (const bool skin : {true, false})
-    if (!is_within(task, c)) c = made_with(budget.vertices, skin);
+    if (!is_within(task, c)) c = made_with({budget.vertices, budget.vertices}, skin);
   if (!is_within(task, c)) close_finest(c);
   return c;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "remesh/late_topology.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -10,20 +11,26 @@
 #include "base/found.h"
 #include "layout/operations/topology_opening.h"
 #include "remesh/plan_regions.h"
+#include "remesh/quality.h"
 #include "surface/size_field.h"
 
 namespace hybrid_mesh {
 namespace {
 
-constexpr double kQuadsAround = 4;  // of a loop that opens: with fewer the tube is a pinch
-constexpr double kMostRise = 0.3;   // of energy a new quad: above it they are far from square, and a finer level may have better ones
-constexpr double kWorstRise = 10;   // ... above which the mesh would be a wreck there: it is not opened
-constexpr int kMostMargin = 2;      // rings of quads beside what covers it
+constexpr double kQuadsAround = 4;    // of a loop that opens: with fewer the tube is a pinch
+constexpr double kMostRise = 0.3;     // of energy a new quad: above it they are far from square, and a finer level may have better ones
+constexpr double kLeastShape = 0.58;  // of the new quads' scaled Jacobians, the 5th percentile: below it likewise; the fit takes a little of it
+constexpr double kShare = 0.15;       // of the vertices, among all that opens: for more of them nothing waits for better shaped quads
+constexpr int kFewQuads = 24;         // of an opening: where not even they have room in its share, shape does not count
+// Of an adaptive mesh a quad that opens on a fine level: around it are as many again, and all of them are split where hanging nodes are closed.
+constexpr double kVerticesAQuad = 8;
+constexpr double kWorstRise = 10;  // ... above which the mesh would be a wreck there: it is not opened
+constexpr int kMostMargin = 2;     // rings of quads beside what covers it
 
 class LateOpening {
  public:
-  LateOpening(Construction& made, const RemeshTask& task, std::int64_t most_quads)
-      : made_(made), task_(task), most_quads_(most_quads), reasons_(made.surface().open.size()) {}
+  LateOpening(Construction& made, const RemeshTask& task, const OpeningBounds& bounds)
+      : made_(made), task_(task), bounds_(bounds), reasons_(made.surface().open.size()) {}
 
   LateTopology run() {
     if (!closed().empty() && made_.level() == 0) made_.refine();  // root quads stay
@@ -31,7 +38,7 @@ class LateOpening {
       if (task_.base.levels[e] < made_.level())
         reasons_[e] = "nothing opens below level " + std::to_string(made_.level()) + ", on which quads are laid out anew";
     for (bool last = false; !last;) {
-      last = 4 * static_cast<std::int64_t>(made_.quads().graph().patch_count()) > most_quads_;
+      last = 4 * static_cast<std::int64_t>(made_.quads().graph().patch_count()) > bounds_.quads;
       open_level(last);
       if (closed().empty()) break;
       if (last) continue;
@@ -83,7 +90,11 @@ class LateOpening {
   struct Opening {
     RegionRepatch region;
     MappedEdit mapped;
-    double rise() const { return (mapped.energy_after - mapped.energy_before) / static_cast<double>(mapped.edit.quads.size()); }
+    double rise = 0;   // of energy a new quad
+    double shape = 1;  // 5th percentile of the new quads' scaled Jacobians, by their corners on the surface; 1 where they do not count
+    bool is_even() const { return rise <= kMostRise; }
+    // Beside what is wanted: above 1 a finer level is looked at.
+    double severity() const { return std::max(rise / kMostRise, (1 - shape) / (1 - kLeastShape)); }
   };
 
   // Opens it where that leaves good quads, close to its caps or with more room around; `anyhow`: also where it does not, in the best way; `last`:
@@ -93,7 +104,7 @@ class LateOpening {
     std::optional<Opening> best = best_opening(state, covering_, e, false);
     if (!best && last) best = best_opening(state, covering_, e, true);
     if (!best) return;
-    if (best->rise() > kWorstRise || (best->rise() > kMostRise && !anyhow && is_better_finer(state, e, best->rise()))) {
+    if (best->rise > kWorstRise || (best->severity() > 1 && !anyhow && is_better_finer(state, e, *best))) {
       reasons_[e] = "its quads would be distorted";
       return;
     }
@@ -105,39 +116,59 @@ class LateOpening {
     made_.apply(std::move(best->mapped));
   }
 
-  std::optional<Opening> best_opening(const LevelState& state, CoveringSearch& search, int e, bool together) {
+  // `even`: there is one already whose quads are even, if not well shaped.
+  std::optional<Opening> best_opening(const LevelState& state, CoveringSearch& search, int e, bool together, bool even = false) {
     const CoveringQuads covering = search.quads_of(state);
     std::optional<Opening> best;
-    for (int margin = 0; margin <= kMostMargin && !(best && best->rise() <= kMostRise); ++margin) {
-      std::optional<Opening> found = find(state, covering, e, {margin, together});
+    for (int margin = 0; margin <= kMostMargin && !(best && best->severity() <= 1); ++margin) {
+      const Found<RegionRepatch> region = find_opening(state, covering, e, {margin, together});
+      if (!region) {
+        reasons_[e] = region.reason;
+        continue;
+      }
+      if ((even || (best && best->is_even())) && !is_affordable(region->patches.size())) break;
+      std::optional<Opening> found = laid_out(state, *region, e);
       if (!found) continue;
-      if (best && found->rise() >= best->rise()) break;  // more room makes it no better
+      if (best && found->severity() >= best->severity()) break;  // more room makes it no better
       best = std::move(found);
     }
     return best;
   }
 
-  // Would it leave better quads on the next level? Where what opens is wide beside its quads a finer level has more of them to distort.
-  bool is_better_finer(const LevelState& state, int e, double rise) {
-    const std::optional<Opening> finer = best_opening(quadrisected(state), finer_covering_, e, false);
-    return finer && finer->rise() < rise;
+  // Does the mesh have the vertices for what opens to have as many quads each, for the sake of their shape alone?
+  bool is_affordable(std::size_t quads) const {
+    const double share = kShare * static_cast<double>(bounds_.vertices) / static_cast<double>(made_.surface().open.size());
+    return kVerticesAQuad * static_cast<double>(quads) <= share;
   }
 
-  std::optional<Opening> find(const LevelState& state, const CoveringQuads& covering, int e, const OpeningRoom& room) {
-    const Found<RegionRepatch> region = find_opening(state, covering, e, room);
-    if (!region) {
-      reasons_[e] = region.reason;
-      return std::nullopt;
-    }
+  // Would it leave better quads on the next level? Where what opens is wide beside its quads a finer level has more of them to distort.
+  bool is_better_finer(const LevelState& state, int e, const Opening& here) {
+    const std::optional<Opening> finer = best_opening(quadrisected(state), finer_covering_, e, false, here.is_even());
+    return finer && finer->severity() < here.severity();
+  }
+
+  std::optional<Opening> laid_out(const LevelState& state, const RegionRepatch& region, int e) {
     try {
-      Found<MappedEdit> mapped = found([&] { return repatch_region(state, *region, task_.progress.part(0.55, 0.55)); });
-      if (mapped) return Opening{*region, std::move(*mapped)};
+      Found<MappedEdit> mapped = found([&] { return repatch_region(state, region, task_.progress.part(0.55, 0.55)); });
+      if (mapped) return opening(state, region, std::move(*mapped));
       reasons_[e] = mapped.reason;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::InvalidInput) throw;
       reasons_[e] = error.what();  // the quads around have no room for such a layout
     }
     return std::nullopt;
+  }
+
+  Opening opening(const LevelState& state, const RegionRepatch& region, MappedEdit mapped) const {
+    const double rise = (mapped.energy_after - mapped.energy_before) / static_cast<double>(mapped.edit.quads.size());
+    // The disks that close a tube's ends are no better shaped with more room or on a finer level: they take in what it had hidden.
+    const bool is_tube = made_.surface().series->events[region.opens.front()].kind == EventKind::Tube;
+    if (is_tube || !is_affordable(kFewQuads)) return {region, std::move(mapped), rise};
+    LevelState after = state;
+    std::vector<double> shapes;
+    for (const int q : apply(after, mapped).added) shapes.push_back(scaled_jacobian(corner_positions(*after.maps[q].map)));
+    std::sort(shapes.begin(), shapes.end());
+    return {region, std::move(mapped), rise, shapes[shapes.size() / 20]};
   }
 
   // Sides of the region's first rim.
@@ -147,7 +178,7 @@ class LateOpening {
 
   Construction& made_;
   const RemeshTask& task_;
-  std::int64_t most_quads_;
+  OpeningBounds bounds_;
   std::vector<std::string> reasons_;
   CoveringSearch covering_, finer_covering_;  // of the level, and of its quads' quadrants
   LateTopology out_;
@@ -155,11 +186,11 @@ class LateOpening {
 
 }  // namespace
 
-std::int64_t most_quads_to_open(const RemeshOptions& options, std::int64_t vertices) {
+OpeningBounds opening_bounds(const RemeshOptions& options, std::int64_t vertices) {
   constexpr std::int64_t deeper = 4;
-  return options.refinement == Refinement::Adaptive ? deeper * vertices : vertices;
+  return {vertices, options.refinement == Refinement::Adaptive ? deeper * vertices : vertices};
 }
 
-LateTopology open_late(Construction& made, const RemeshTask& task, std::int64_t most_quads) { return LateOpening(made, task, most_quads).run(); }
+LateTopology open_late(Construction& made, const RemeshTask& task, const OpeningBounds& bounds) { return LateOpening(made, task, bounds).run(); }
 
 }  // namespace hybrid_mesh

@@ -19,11 +19,14 @@ struct LateTopology {
   std::vector<std::string> waited;                    // per event: why it did not open on the level before, on which it was to
 };
 
-// Of the finest level on which something may open. An adaptive mesh keeps no more of it than what opens there.
-std::int64_t most_quads_to_open(const RemeshOptions& options, std::int64_t vertices);
+struct OpeningBounds {
+  std::int64_t vertices = 0;  // that the final mesh may have
+  std::int64_t quads = 0;     // of the finest level on which something may open. An adaptive mesh keeps no more of it than what opens there
+};
+OpeningBounds opening_bounds(const RemeshOptions& options, std::int64_t vertices);
 
 // Opens the events of the construction's surface, each on the first level whose quads can show it and have room for it. Levels are made as they are
-// needed, up to the last one that has at most so many quads.
-LateTopology open_late(Construction& made, const RemeshTask& task, std::int64_t most_quads);
+// needed, up to the last one within the bounds.
+LateTopology open_late(Construction& made, const RemeshTask& task, const OpeningBounds& bounds);
 
 }  // namespace hybrid_mesh

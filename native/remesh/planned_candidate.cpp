@@ -19,7 +19,7 @@ Operations operations_of(const RemeshTask& task, const std::vector<Plan::Region>
   return [&](Construction& made) {
     std::vector<Plan::Region> regions = repatch_regions(made, planned, task.source.placement, task.progress.part(0.55, 0.6));
     // What the plan has no operation for opens as it would without a plan.
-    const LateTopology late = open_late(made, task, most_quads_to_open(task.options, plan_budget(task.options, task.source, {}).vertices));
+    const LateTopology late = open_late(made, task, opening_bounds(task.options, plan_budget(task.options, task.source, {}).vertices));
     if (!late.unopened.empty())
       throw Error(ErrorCode::Unsupported, "the plan's topology[" + std::to_string(late.unopened.front().first) +
                                               "] cannot open on this surface: " + late.unopened.front().second);

@@ -9,9 +9,7 @@
 
 namespace hybrid_mesh {
 
-double scaled_jacobian(const QuadMesh& mesh, std::size_t face) {
-  std::array<Vec3, 4> p;
-  for (int i = 0; i < 4; ++i) p[i] = mesh.points[mesh.indices[mesh.offsets[face] + i]];
+double scaled_jacobian(const std::array<Vec3, 4>& p) {
   const Vec3 normal = (p[2] - p[0]).cross(p[3] - p[1]);
   double least = 1;
   for (int i = 0; i < 4; ++i) {
@@ -20,6 +18,12 @@ double scaled_jacobian(const QuadMesh& mesh, std::size_t face) {
     least = std::min(least, l > 0 ? a.cross(b).dot(normal) / l : 0.0);
   }
   return least;
+}
+
+double scaled_jacobian(const QuadMesh& mesh, std::size_t face) {
+  std::array<Vec3, 4> corners;
+  for (int i = 0; i < 4; ++i) corners[i] = mesh.points[mesh.indices[mesh.offsets[face] + i]];
+  return scaled_jacobian(corners);
 }
 
 std::vector<int> inverted_quads(const QuadMesh& mesh) {

@@ -14,7 +14,8 @@ struct QuadQuality {
   std::size_t worst = 0;  // the face with the least scaled Jacobian, the first of them
 };
 
-// Of a face that is a quad.
+// Of a quad by its corners; of a face that is a quad.
+double scaled_jacobian(const std::array<Vec3, 4>& corners);
 double scaled_jacobian(const QuadMesh& mesh, std::size_t face);
 
 // The quads whose scaled Jacobian is not positive.

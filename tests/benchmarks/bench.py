@@ -3,10 +3,13 @@
 
 import argparse
 import csv
+import json
 import os
 import sys
+import tempfile
 from pathlib import Path
 
+import numpy as np
 import tools
 
 sys.path.insert(0, str(tools.STAGE))
@@ -33,6 +36,17 @@ def attempt(function, *arguments):
         return function(*arguments), None
     except tools.Failure as failure:
         return None, str(failure)
+
+
+def timed_remesh(mesh, options):
+    """What timed_remesh.py measures in a process of its own, or a Failure."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, result = Path(folder) / "in.npz", Path(folder) / "out.json"
+        np.savez(source, points=mesh[0], offsets=mesh[1], indices=mesh[2])
+        code, output, *_ = tools.run(["/usr/bin/python3", tools.HERE / "timed_remesh.py", source, result, *options], {"PYTHONPATH": str(tools.STAGE)})
+        if code != 0:
+            raise tools.Failure(f"exit code {code}: {tools.last_complaint(output)}")
+        return json.loads(result.read_text())
 
 
 def write_csv(records, path):

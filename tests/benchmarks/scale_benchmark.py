@@ -35,14 +35,7 @@ def default_model():
 
 
 def remesh(points, triangles, options):
-    """What timed_remesh.py measures in a process of its own, or a Failure."""
-    with tempfile.TemporaryDirectory() as folder:
-        source, result = Path(folder) / "in.npz", Path(folder) / "out.json"
-        np.savez(source, points=points, offsets=np.arange(0, triangles.size + 1, 3), indices=triangles.ravel().astype(np.int32))
-        code, output, *_ = tools.run(["/usr/bin/python3", tools.HERE / "timed_remesh.py", source, result, *options], {"PYTHONPATH": str(tools.STAGE)})
-        if code != 0:
-            raise tools.Failure(f"exit code {code}: {tools.last_complaint(output)}")
-        return json.loads(result.read_text())
+    return bench.timed_remesh((points, np.arange(0, triangles.size + 1, 3), triangles.ravel().astype(np.int32)), options)
 
 
 def row_of(points, measured):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Remeshes in this process and writes what it took as JSON: timed_remesh.py IN.npz OUT.json [REMESH OPTIONS]
 
-Seconds and CPU seconds, of all threads, are of the remesh alone. CPU seconds of a stage are those between two looks at which the job said that it was at
+Seconds and CPU seconds, of all threads, are of the remesh alone; its levels are looked at afterwards. CPU seconds of a stage are those between two looks at which the job said that it was at
 that stage."""
 
 import json
@@ -11,6 +11,7 @@ import time
 import numpy as np
 from hybrid_mesh import _native as native
 from hybrid_mesh.core import cli, report
+from quality import scaled_jacobians
 
 LOOK_SECONDS = 0.005
 
@@ -28,19 +29,36 @@ def timed(start):
     return job, time.perf_counter() - began, seen - cpu_began, stages
 
 
+def described_levels(result, count):
+    """Of each level its topology, and the shape of the quads with which something opened on it."""
+    described = []
+    for number in range(count):
+        level = result.hierarchy.level(f"N{number}")
+        mesh = [level[name] for name in ("points", "offsets", "indices")]
+        opened = level["opened_level"] == number if number and "opened_level" in level else np.zeros(len(mesh[1]) - 1, bool)
+        shapes = np.sort(scaled_jacobians(mesh)[opened])
+        described.append({**native.topology(*mesh), "opened_quads": len(shapes), "opened_p05": float(shapes[len(shapes) // 20]) if len(shapes) else None})
+    return described
+
+
 def main(source, target, *options):
     settings = cli.remesh_settings(options).native()
     with np.load(source) as arrays:
         mesh = [arrays[name] for name in ("points", "offsets", "indices")]
     job, seconds, cpu_seconds, stages = timed(lambda: native.start_remesh(*mesh, settings))
-    final = json.loads(job.result().report)["final"]
+    made = json.loads(job.result().report)
+    memory = report.peak_memory_bytes()
+    levels = described_levels(job.result(), len(made["levels"]))
+    final = made["final"]
     measured = {
         "vertices": final["vertices"],
         "l2": final["l2"],
         "seconds": seconds,
         "cpu_seconds": cpu_seconds,
         "cpu_seconds_by_stage": stages,
-        "peak_memory_bytes": report.peak_memory_bytes(),
+        "peak_memory_bytes": memory,
+        "verdict": made["verdict"],
+        "levels": levels,
     }
     with open(target, "w", encoding="utf-8") as file:
         json.dump(measured, file)

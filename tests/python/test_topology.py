@@ -1,10 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hybrid_mesh import _native
-from shapes import cube, mesh_of, sphere, torus
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT / "blend_samples"), str(ROOT / "tests/benchmarks")]
+import implicit_shapes  # noqa: E402
+from quality import scaled_jacobians  # noqa: E402
+from shapes import cube, mesh_of, sphere, torus  # noqa: E402
 
 
 def two_tori():
@@ -165,6 +172,30 @@ def test_components_and_handles_of_one_ball(refinement):
     operations = [hierarchy.operation(i) for i in range(hierarchy.operation_count)]
     assert sorted(event for operation in operations for event in operation["opens"]) == list(range(len(events)))
     assert all(events[event]["level"] == operation["level"] for operation in operations for event in operation["opens"])
+
+
+def ringed_ball(radius, away, thickness):
+    """A ball, and a ring that has grown into it: a handle, whose tunnel is where the ring is free."""
+
+    def distance(points):
+        ring = points - [1 + away, 0, 0]
+        ring = np.hypot(np.hypot(ring[..., 0], ring[..., 2]) - radius, ring[..., 1]) - thickness
+        return implicit_shapes.union(np.linalg.norm(points, axis=-1) - 1, ring, 0.05)
+
+    points, triangles = implicit_shapes.zero_set(distance, np.full(3, -1.3), np.array([1.5 + away + radius + thickness, 1.3, 1.3]), 0.04)
+    return points, np.arange(0, triangles.size + 1, 3), triangles.astype(np.int32).ravel()
+
+
+@pytest.mark.parametrize("shape", [(0.2, 0.05, 0.07), (0.25, 0.1, 0.09)])
+def test_quads_are_well_shaped_where_a_handle_opens(shape):
+    """One that would pinch or shear its quads waits for a finer level."""
+    result = _native.remesh(*ringed_ball(*shape), {"vertices": 6000, "refinement": "adaptive", "base": "min", "topology": "late"})
+    (loop,) = json.loads(result.report)["topology"]["loops"]
+    assert loop["level"] > 0
+    level = result.hierarchy.level(f"N{loop['level']}")
+    shapes = scaled_jacobians([level[key] for key in ("points", "offsets", "indices")])[level["opened"] > 0]
+    assert len(shapes) > 0
+    assert np.percentile(shapes, 5) > 0.5
 
 
 def test_nobody_knows_what_opened_in_a_file(tmp_path):
