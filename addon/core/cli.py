@@ -12,7 +12,7 @@ from . import plans
 from .batch import Batch, BatchOptions, OutputError
 from .native import NativeMissing, explain
 from .process import Processes, WorkerFailed, bpy_available
-from .settings import COMPONENTS, FACES, SYMMETRIES, SYMMETRY_SIDES, TOPOLOGIES, RemeshSettings, SettingsError
+from .settings import COMPONENTS, EFFORTS, FACES, SYMMETRIES, SYMMETRY_SIDES, TOPOLOGIES, RemeshSettings, SettingsError
 from .version import VERSION
 
 DONE, FAILED, WRONG_ARGUMENTS, INTERRUPTED = 0, 1, 2, 130
@@ -89,6 +89,7 @@ def _settings(arguments):
         features=arguments.features,
         symmetry=arguments.symmetry,
         symmetry_side=arguments.symmetry_side,
+        effort=arguments.effort,
         drop_components=arguments.drop_components,
         density=arguments.density or "",
         strict=arguments.strict,
@@ -228,6 +229,7 @@ def _parser():
     shape.add_argument("--plan", metavar="FILE.json", help="take base quads and irregular operations from a plan, as NAME.plan.json of another remesh")
     shape.add_argument("--semi-regular", action="store_true", help="no irregular operations")
     shape.add_argument("--seed", type=_whole(0), default=1, metavar="N", help="of what is arbitrary (default 1)")
+    shape.add_argument("--effort", choices=EFFORTS, default="normal", help="what is tried where the first mesh is poor: nothing, other bases and smaller quads (default), or more of both")
     surface = command.add_argument_group("input surface")
     surface.add_argument("--drop-components", type=float, default=0.0, metavar="AREA", help="remove components below this fraction of the area")
     surface.add_argument(

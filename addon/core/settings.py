@@ -14,6 +14,7 @@ FEATURES = ("auto", "none")
 TOPOLOGIES = ("auto", "late", "base")
 COMPONENTS = ("apart", "joined")
 SYMMETRIES = ("none", "auto", "x", "y", "z")
+EFFORTS = ("quick", "normal", "thorough")
 SYMMETRY_SIDES = ("positive", "negative", "average")
 
 # How an option is called where the user typed it; the command line's name is the one people look up.
@@ -32,6 +33,7 @@ OPTION_NAMES = {
     "features": "--features",
     "symmetry": "--symmetry",
     "symmetry_side": "--symmetry-side",
+    "effort": "--effort",
     "drop_components": "--drop-components",
     "density": "--density",
     "strict": "--strict",
@@ -61,6 +63,7 @@ class RemeshSettings:
     features: object = "auto"  # sharp edges: "auto" where flat or smooth faces meet at them, "none", or the angle in degrees from which they are kept
     symmetry: object = "none"  # the mesh is its own mirror image: "auto" in a plane that is found, "x", "y", "z" across that axis, or a plane's normal and offset
     symmetry_side: str = "positive"  # what is mirrored: the surface on the side that the normal points to, on the other ("negative"), or their "average"
+    effort: str = "normal"  # what is tried where the first mesh is poor: nothing ("quick"), other bases and smaller quads, or more of both ("thorough")
     drop_components: float = 0.0  # components below this fraction of the area are removed
     density: str = ""  # name of the attribute by whose values, in 0..1, quads are smaller or larger; empty: none
     strict: bool = False  # refuse input that needs repair; a poor result is an error
@@ -94,6 +97,7 @@ class RemeshSettings:
         else:
             _plane("symmetry", self.symmetry)
         _choice("symmetry_side", self.symmetry_side, SYMMETRY_SIDES)
+        _choice("effort", self.effort, EFFORTS)
         _fraction("drop_components", self.drop_components, bounds.end_of_drop_components, "the whole area")
         if not isinstance(self.density, str):
             raise SettingsError(f"--density must be the name of an attribute, not {self.density!r}")

@@ -182,6 +182,15 @@ void apply(RemeshOptions& options, const std::string& key, const Setting& settin
     options.stretch_threshold = setting.number(limits::least_stretch_threshold, limits::most_stretch_threshold);
   } else if (key == "semi_regular") {
     options.semi_regular = setting.flag();
+  } else if (key == "effort") {
+    if (setting.is("quick"))
+      options.effort = Effort::Quick;
+    else if (setting.is("normal"))
+      options.effort = Effort::Normal;
+    else if (setting.is("thorough"))
+      options.effort = Effort::Thorough;
+    else
+      setting.refuse("'quick', 'normal' or 'thorough'");
   } else if (key == "drop_components") {
     options.drop_components = setting.number_below(limits::end_of_drop_components);
   } else if (key == "density") {

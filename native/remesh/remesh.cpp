@@ -120,7 +120,7 @@ CandidateSearch best_for(const RemeshTask& task, const Target& target, bool anot
     return search;
   }
   best = fitted(task, std::move(best), true);
-  if (best.keeps_features || task.options.error > 0 || !misses_a_limb(task, best)) return search;
+  if (best.keeps_features || task.options.error > 0 || task.options.effort == Effort::Quick || !misses_a_limb(task, best)) return search;
   keep_better(best, another_candidate(task));
   if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
   return search;
@@ -151,7 +151,7 @@ CandidateSearch best_with_features(const RemeshTask& task) {
     bool another;
   };
   std::vector<Way> ways{{{}, false}};
-  if (may_be_finer(task)) ways.insert(ways.end(), {{{}, true}, {{.levels_less = 1}, false}});
+  if (may_be_finer(task) && task.options.effort != Effort::Quick) ways.insert(ways.end(), {{{}, true}, {{.levels_less = 1}, false}});
   std::optional<CandidateSearch> best;
   Badness least;
   for (const Way& way : ways) {
@@ -170,21 +170,31 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   return without;
 }
 
-// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows. Not of a large surface or base,
-// of which a mesh takes long, and where it is poor in a few places of many.
+// How often a mesh is made anew by what the one before shows that quads need, and of which surfaces and bases.
+struct NeedBounds {
+  int tries;
+  std::int64_t base_quads;
+  std::size_t faces;
+};
+NeedBounds need_bounds(Effort effort) {
+  if (effort == Effort::Quick) return {0, 0, 0};
+  if (effort == Effort::Normal) return {2, 1500, 500000};
+  return {4, std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::size_t>::max()};
+}
+
+// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows.
 CandidateSearch best_by_need(const RemeshTask& task) {
-  constexpr int tries = 2, most_base_quads = 1500;
-  constexpr std::size_t most_faces = 500000;
   CandidateSearch best = best_for(task, {}, false);
   const RemeshOptions& options = task.options;
+  const NeedBounds bounds = need_bounds(options.effort);
   const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.levels < 0 && options.base != BaseSize::Given &&
-                          !task.source.density.sizes && !task.source.mirror && !task.base.series && task.source.repaired.faces.size() <= most_faces;
-  if (!best.candidate || !may_change || best.candidate->hierarchy.base_count() > most_base_quads) return best;
+                          !task.source.density.sizes && !task.source.mirror && !task.base.series && task.source.repaired.faces.size() <= bounds.faces;
+  if (!best.candidate || !may_change || best.candidate->hierarchy.base_count() > bounds.base_quads) return best;
   Badness least = badness(task, *best.candidate);
   if (!least.quads_are_too_large) return best;
   const TriangleSurface placed = task.source.placement.to_unit(task.source.repaired);
   Need need(placed);
-  for (int k = 0; k < tries && least.quads_are_too_large && need.learn_from(best.candidate->final_mesh, task.progress.part(1, 1)); ++k) {
+  for (int k = 0; k < bounds.tries && least.quads_are_too_large && need.learn_from(best.candidate->final_mesh, task.progress.part(1, 1)); ++k) {
     const RemeshTask sized{options, task.source, task.base, task.progress, task.watch, gradual_sizes(placed, need.size())};
     CandidateSearch found = search_candidate(sized, {.features = false}, base_requests(options, false));
     if (!found.candidate) break;

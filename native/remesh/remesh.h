@@ -26,6 +26,10 @@ enum class Symmetry { None, Auto, Given };
 // What is mirrored: the surface on the side of the plane that its normal points to, on the other, or the mean of both.
 enum class SymmetrySide { Positive, Negative, Average };
 
+// What is tried where the first mesh is poor. Quick: nothing. Normal: other bases and smaller quads where they are needed, a few times, but not of large
+// surfaces and bases, of which a mesh takes long. Thorough: of these, too, and more often.
+enum class Effort { Quick, Normal, Thorough };
+
 struct RemeshOptions {
   std::int64_t vertices = 0;  // hard upper bound on the final mesh's vertices; 0 = none
   double error = 0;           // stop at this l2 (relative to the bounding-box diagonal); 0 = none
@@ -44,6 +48,7 @@ struct RemeshOptions {
   Symmetry symmetry = Symmetry::None;
   MirrorPlane mirror;  // where the input stands; with Symmetry::Given
   SymmetrySide symmetry_side = SymmetrySide::Positive;
+  Effort effort = Effort::Normal;
   double drop_components = 0;  // see RepairOptions
   std::string density;         // name of the attribute that the input's `density` holds, see density.h; empty: quads are even
   bool strict = false;         // refuse input that needs repair

@@ -57,7 +57,7 @@ def limits():
 
 SETTINGS = {
     "vertices", "error", "levels", "refinement", "faces", "base", "topology", "components", "remove_noise", "stretch_threshold", "semi_regular", "features",
-    "symmetry", "symmetry_side",
+    "symmetry", "symmetry_side", "effort",
     "drop_components", "strict", "seed", "threads", "plan", "density",
 }  # fmt: skip
 

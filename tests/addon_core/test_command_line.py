@@ -94,8 +94,8 @@ def test_density_is_a_name(command_line):
     assert "--density NAME" in text and "4^(1 - 2 v)" in text
 
 
-@pytest.mark.parametrize("option, values", [("topology", ("auto", "late", "base")), ("components", ("apart", "joined"))])
-def test_topology_is_a_setting(command_line, option, values):
+@pytest.mark.parametrize("option, values", [("topology", ("auto", "late", "base")), ("components", ("apart", "joined")), ("effort", ("normal", "quick", "thorough"))])
+def test_a_choice_is_a_setting(command_line, option, values):
     for value in values:
         assert command_line.run("remesh", command_line.box("box.obj"), "--output", "out", f"--{option}", value).returncode == 0
         assert report(command_line, "box")["settings"].get(option, values[0]) == value

@@ -28,7 +28,7 @@ def test_defaults_and_presets_are_valid():
         ("stretch_threshold", float("nan")), ("drop_components", limits().end_of_drop_components), ("drop_components", -0.1), ("seed", -1),
         ("features", "some"), ("features", ""), ("features", None), ("features", True), ("features", float("nan")), ("features", -40),
         ("features", limits().least_feature_angle - 0.25), ("features", limits().most_feature_angle + 0.25), ("symmetry", "w"), ("symmetry", None), ("symmetry", 1), ("symmetry", (1, 0, 0)),
-        ("symmetry", (0, 0, 0, 1)), ("symmetry", (1, 0, 0, float("inf"))), ("symmetry_side", "left"), ("threads", -1), ("density", None), ("density", 1), *((name, most + 1) for name, most in LARGEST.items()),
+        ("symmetry", (0, 0, 0, 1)), ("symmetry", (1, 0, 0, float("inf"))), ("symmetry_side", "left"), ("effort", "high"), ("threads", -1), ("density", None), ("density", 1), *((name, most + 1) for name, most in LARGEST.items()),
     ],
 )  # fmt: skip
 def test_what_is_out_of_bounds_is_named(name, value):

@@ -177,6 +177,7 @@ def test_the_result_depends_on_neither_run_nor_threads(tmp_path):
         ("base", 0),
         ("stretch_threshold", 0),
         ("semi_regular", 1),
+        ("effort", "high"),
         ("drop_components", 1.0),
         ("strict", "yes"),
         ("seed", -1),

@@ -52,6 +52,11 @@ SYMMETRY_SIDES = (
     ("NEGATIVE", "Negative", "The surface on the negative side is mirrored"),
     ("AVERAGE", "Average", "The mean of both sides is"),
 )
+EFFORTS = (
+    ("QUICK", "Quick", "Nothing: the first mesh is the result"),
+    ("NORMAL", "Normal", "Other bases, and smaller quads where they are needed: a few times, and not of surfaces of which a mesh takes long"),
+    ("THOROUGH", "Thorough", "The same more often, and of any surface"),
+)
 
 # Blender's whole numbers have 32 bits.
 _LARGEST_WHOLE_NUMBER = 2**31 - 1
@@ -119,6 +124,7 @@ class RemeshProperties:
         max=limits().most_stretch_threshold, soft_max=20,
     )  # fmt: skip
     semi_regular: BoolProperty(name="Semi-Regular", description="No irregular operations: the topology and layout of the base domain on every level")
+    effort: EnumProperty(name="Effort", description="What is tried where the first mesh is poor", items=EFFORTS, default="NORMAL")
     drop_components: FloatProperty(
         name="Drop Components", description="Remove components with less than this fraction of the whole area", default=0, min=0,
         max=_below(limits().end_of_drop_components), soft_max=0.99, precision=4,
@@ -158,6 +164,7 @@ def core_settings(properties):
         features=_degrees(properties.feature_angle) if properties.features == "ANGLE" else properties.features.lower(),
         symmetry=properties.symmetry.lower(),
         symmetry_side=properties.symmetry_side.lower(),
+        effort=properties.effort.lower(),
         remove_noise=properties.remove_noise,
         stretch_threshold=properties.stretch,
         semi_regular=properties.semi_regular,
@@ -187,6 +194,7 @@ def apply_settings(properties, settings):
         properties.feature_angle = math.radians(settings.features)
     properties.symmetry = settings.symmetry.upper()
     properties.symmetry_side = settings.symmetry_side.upper()
+    properties.effort = settings.effort.upper()
     properties.remove_noise = settings.remove_noise
     properties.stretch = settings.stretch_threshold
     properties.semi_regular = settings.semi_regular
@@ -229,6 +237,7 @@ def draw_advanced(layout, properties):
     column.prop(properties, "semi_regular")
     column.prop(properties, "drop_components")
     column.prop(properties, "remove_noise")
+    column.prop(properties, "effort")
     column.prop(properties, "strict")
     column.prop(properties, "seed")
     column.prop(properties, "threads")

@@ -97,5 +97,27 @@ TEST(Need, APoorMeshIsMadeOnceMoreAndIsBetter) {
   EXPECT_GT(once.report["final"]["hausdorff"].get<double>(), 1.2 * r.report["final"]["hausdorff"].get<double>());
 }
 
+TEST(Effort, WithNoneThePoorMeshIsTheResult) {
+  RemeshOptions options;
+  options.vertices = 1200;
+  options.effort = Effort::Quick;
+  Context context;
+  const RemeshResult r = remesh(spiky_ball(), options, context);
+  EXPECT_FALSE(r.report["base"]["by_need"].get<bool>());
+  EXPECT_EQ(r.report["verdict"]["result"], "poor");
+}
+
+TEST(Effort, AGoodMeshIsTheSameWithAny) {
+  RemeshOptions options;
+  options.vertices = 1200;
+  Context context;
+  const RemeshResult normal = remesh(testing::ball(20), options, context);
+  ASSERT_EQ(normal.report["verdict"]["result"], "good");
+  for (const Effort effort : {Effort::Quick, Effort::Thorough}) {
+    options.effort = effort;
+    EXPECT_EQ(remesh(testing::ball(20), options, context).final_mesh.points, normal.final_mesh.points);
+  }
+}
+
 }  // namespace
 }  // namespace hybrid_mesh
