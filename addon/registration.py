@@ -17,6 +17,7 @@ from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
 from .features.levels import stored as stored_levels
 from .features.levels import streams as level_streams
+from .features.multires import operators as multires_operators
 from .features.remesh import operators as remesh_operators
 from .features.remesh import panel as remesh_panel
 from .features.remesh import properties as remesh_properties
@@ -41,6 +42,7 @@ CLASSES = (
     level_operators.HYBRID_MESH_OT_update_levels,
     level_operators.HYBRID_MESH_OT_reset_level,
     mesh_operator.HYBRID_MESH_OT_make_mesh,
+    multires_operators.HYBRID_MESH_OT_convert_to_multires,
     file_operators.HYBRID_MESH_OT_import_hmesh,
     file_operators.HYBRID_MESH_OT_export_hmesh,
     layout_operators.HYBRID_MESH_OT_draw_layout,

@@ -4,6 +4,7 @@
 from dataclasses import dataclass, field
 
 import numpy
+from mathutils.bvhtree import BVHTree
 
 from .. import compat
 from . import meshes
@@ -62,28 +63,49 @@ def carrier(source, repaired):
     """
     faces = matching_faces(repaired[0], repaired[2].reshape(-1, 3), source.mesh.points, source.mesh.indices.reshape(-1, 3))
     neighbours = triangle_neighbours(source.mesh.indices.reshape(-1, 3))
-    islands = {name: surface_islands(source.mesh.indices, uv[source.triangle_loops].reshape(-1, 2)) for name, uv in source.carried.uvs.items()}
+    islands = _islands(source)
 
     def carry(obj, arrays):
         found = arrays.get("source_face")
-        if found is not None and len(faces):
-            _Place(source, arrays, faces, neighbours).carry(obj, islands)
+        if found is None or not len(faces):
+            return
+        triangle = faces[numpy.clip(found, 0, len(faces) - 1)]
+        triangle = numpy.where((found >= 0) & (triangle >= 0), triangle, 0)
+        # The fit has moved the vertices a little since they were put on their triangles.
+        triangle = walk(numpy.asarray(arrays["points"]), triangle, source.mesh.points, source.mesh.indices.reshape(-1, 3), neighbours)
+        Places(source, arrays, triangle).carry(obj, islands)
 
     return carry
 
 
-class _Place:
-    """Where each vertex of a level lies on the source."""
+def nearest_carrier(source):
+    """The same where nothing but the places of the vertices tells where they lie on the source: each takes the nearest one."""
+    find, islands = nearest_triangles(source.mesh), _islands(source)
 
-    def __init__(self, source, arrays, faces, neighbours):
+    def carry(obj, arrays):
+        Places(source, arrays, find(arrays["points"])).carry(obj, islands)
+
+    return carry
+
+
+def nearest_triangles(mesh):
+    """A function that finds, for points, the nearest triangle of triangle MeshArrays each."""
+    tree = BVHTree.FromPolygons(mesh.points.tolist(), mesh.indices.reshape(-1, 3).tolist(), all_triangles=True)
+    return lambda points: numpy.array([tree.find_nearest(point)[2] for point in numpy.asarray(points).tolist()], dtype=numpy.int64)
+
+
+def _islands(source):
+    return {name: surface_islands(source.mesh.indices, uv[source.triangle_loops].reshape(-1, 2)) for name, uv in source.carried.uvs.items()}
+
+
+class Places:
+    """Where each vertex of a level (a MeshDict) lies on the source: over which triangle, and with what weights of its corners."""
+
+    def __init__(self, source, arrays, triangle):
         self.source, self.mesh, self.carried = source, source.mesh, source.carried
         self.points = numpy.asarray(arrays["points"])
-        found = numpy.asarray(arrays["source_face"])
-        triangle = faces[numpy.clip(found, 0, len(faces) - 1)]
-        triangles = self.mesh.indices.reshape(-1, 3)
-        # The fit has moved the vertices a little since they were put on their triangles.
-        self.triangle = walk(self.points, numpy.where((found >= 0) & (triangle >= 0), triangle, 0), self.mesh.points, triangles, neighbours)
-        self.corners = triangles[self.triangle]
+        self.triangle = triangle
+        self.corners = self.mesh.indices.reshape(-1, 3)[triangle]
         self.weights = closest_weights(self.points, self.mesh.points[self.corners])
         self.offsets, self.indices = numpy.asarray(arrays["offsets"]), numpy.asarray(arrays["indices"])
 
