@@ -35,6 +35,17 @@ def split_normals(mesh):
         mesh.auto_smooth_angle = math.pi
 
 
+def shade_smooth(mesh, angle):
+    """Has a mesh's normals interpolated, but for edges at which it turns by more than an angle."""
+    mesh.polygons.foreach_set("use_smooth", numpy.ones(len(mesh.polygons), dtype=bool))
+    if _HAS_AUTO_SMOOTH:
+        mesh.use_auto_smooth = True
+        mesh.auto_smooth_angle = angle
+    else:
+        mesh.set_sharp_from_angle(angle=angle)
+    mesh.update()
+
+
 def new_level_input(group, name, description, most):
     """Adds a whole-number input in [0, most] with the default `most` to a node group."""
     if _HAS_NODE_INTERFACE:

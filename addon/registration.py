@@ -6,6 +6,7 @@ import contextlib
 import bpy
 
 from . import compat, jobs
+from .features.baking import operators as baking_operators
 from .features.files import operators as file_operators
 from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
@@ -43,6 +44,7 @@ CLASSES = (
     level_operators.HYBRID_MESH_OT_reset_level,
     mesh_operator.HYBRID_MESH_OT_make_mesh,
     multires_operators.HYBRID_MESH_OT_convert_to_multires,
+    baking_operators.HYBRID_MESH_OT_bake,
     file_operators.HYBRID_MESH_OT_import_hmesh,
     file_operators.HYBRID_MESH_OT_export_hmesh,
     layout_operators.HYBRID_MESH_OT_draw_layout,

@@ -35,6 +35,7 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
         column = layout.column(align=True)
         column.operator("hybrid_mesh.make_mesh")
         column.operator("hybrid_mesh.convert_to_multires")
+        column.operator("hybrid_mesh.bake")
         self._verdict(context, layout, report)
         self._quality(layout, properties.quality_of(collection))
         self._levels(layout, report)
