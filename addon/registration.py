@@ -22,6 +22,7 @@ from .features.multires import operators as multires_operators
 from .features.remesh import operators as remesh_operators
 from .features.remesh import panel as remesh_panel
 from .features.remesh import properties as remesh_properties
+from .features.retarget import operators as retarget_operators
 from .features.topology import operators as topology_operators
 from .features.topology import panel as topology_panel
 from .features.topology import properties as topology_properties
@@ -45,6 +46,7 @@ CLASSES = (
     mesh_operator.HYBRID_MESH_OT_make_mesh,
     multires_operators.HYBRID_MESH_OT_convert_to_multires,
     baking_operators.HYBRID_MESH_OT_bake,
+    retarget_operators.HYBRID_MESH_OT_retarget,
     file_operators.HYBRID_MESH_OT_import_hmesh,
     file_operators.HYBRID_MESH_OT_export_hmesh,
     layout_operators.HYBRID_MESH_OT_draw_layout,

@@ -55,7 +55,9 @@ class Bench:
         self._made.append((mesh, bpy.data.meshes))
         mesh.materials.clear()
         if smooth and not meshes.values_of(mesh.polygons, "use_smooth", 1, bool).any():
-            compat.shade_smooth(mesh, _SHARP)
+            mesh.polygons.foreach_set("use_smooth", numpy.ones(len(mesh.polygons), dtype=bool))
+            compat.split_normals_above(mesh, _SHARP)
+            mesh.update()
         obj = bpy.data.objects.new("bake", mesh)
         self._made.append((obj, bpy.data.objects))
         obj.matrix_world = matrix
@@ -69,9 +71,8 @@ class Bench:
 
     def show(self, obj, output, scale, offset):
         """Has a surface show an output of Blender's Geometry node (`Position`, `Normal`) as colours: value * scale + offset."""
-        material = bpy.data.materials.new("bake")
+        material = compat.new_material("bake")
         self._made.append((material, bpy.data.materials))
-        material.use_nodes = True
         nodes, links = material.node_tree.nodes, material.node_tree.links
         nodes.clear()
         entry, map_values = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeVectorMath")

@@ -151,6 +151,11 @@ def mark_sharp(mesh, sharp):
     compat.split_normals(mesh)
 
 
+def mark_seams(mesh, marked):
+    """Sets which edges are seams, a bool an edge."""
+    mesh.edges.foreach_set("use_seam", marked)
+
+
 def add_uv(mesh, name, values):
     """Adds a UV map: one row a corner."""
     layer = mesh.uv_layers.new(name=name)

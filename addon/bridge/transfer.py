@@ -7,7 +7,7 @@ import numpy
 from mathutils.bvhtree import BVHTree
 
 from .. import compat
-from . import meshes
+from . import kept_places, meshes
 from .arrays import closest_weights, majority, matching_faces, surface_islands, triangle_neighbours, walk
 
 _FLOATING = {"FLOAT", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
@@ -45,15 +45,29 @@ def collect(obj, mesh):
         if floating or (attribute.data_type in _WHOLE and attribute.domain == "FACE"):
             values = meshes.get_attribute(mesh, attribute.name)
             carried.attributes.append((attribute.name, attribute.data_type, attribute.domain, values))
-    names = [group.name for group in obj.vertex_groups]
-    if names:
-        weights = numpy.zeros((len(names), len(mesh.vertices)), dtype=numpy.float32)
-        for vertex in mesh.vertices:
-            for element in vertex.groups:
-                if element.group < len(names):
-                    weights[element.group, vertex.index] = element.weight
-        carried.groups = dict(zip(names, weights))
+    carried.groups = group_weights(obj, mesh)
     return carried
+
+
+def group_weights(obj, mesh):
+    """Vertex groups of an object's evaluated mesh: name: (vertices,)."""
+    names = [group.name for group in obj.vertex_groups]
+    weights = numpy.zeros((len(names), len(mesh.vertices)), dtype=numpy.float32)
+    for vertex in mesh.vertices if names else ():
+        for element in vertex.groups:
+            if element.group < len(names):
+                weights[element.group, vertex.index] = element.weight
+    return dict(zip(names, weights))
+
+
+def set_group(obj, name, weights):
+    """Gives an object a vertex group with these weights (vertices,), in the place of one of that name."""
+    old = obj.vertex_groups.get(name)
+    if old is not None:
+        obj.vertex_groups.remove(old)
+    group = obj.vertex_groups.new(name=name)
+    for vertex in numpy.nonzero(weights > 0)[0]:
+        group.add([int(vertex)], float(weights[vertex]), "REPLACE")
 
 
 def carrier(source, repaired):
@@ -73,7 +87,9 @@ def carrier(source, repaired):
         triangle = numpy.where((found >= 0) & (triangle >= 0), triangle, 0)
         # The fit has moved the vertices a little since they were put on their triangles.
         triangle = walk(numpy.asarray(arrays["points"]), triangle, source.mesh.points, source.mesh.indices.reshape(-1, 3), neighbours)
-        Places(source, arrays, triangle).carry(obj, islands)
+        place = Places(source, arrays, triangle)
+        place.carry(obj, islands)
+        kept_places.keep(obj.data, place.corners, place.weights, len(source.mesh.points))
 
     return carry
 
@@ -132,10 +148,7 @@ class Places:
         if active:
             mesh.color_attributes.active_color_index = mesh.color_attributes.find(active)
         for name, weights in self.carried.groups.items():
-            group = obj.vertex_groups.new(name=name)
-            carried = self.by_vertex(weights)
-            for vertex in numpy.nonzero(carried > 0)[0]:
-                group.add([int(vertex)], float(carried[vertex]), "REPLACE")
+            set_group(obj, name, self.by_vertex(weights))
 
     def by_vertex(self, values):
         return numpy.einsum("vk,vk...->v...", self.weights, values[self.corners])

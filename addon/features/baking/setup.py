@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy
 
+from ... import compat
 from ...bridge import arrays, baking, meshes, objects
 from ...core.native import native
 from ..levels import kept, made
@@ -142,9 +143,8 @@ def _use_patches(mesh, level, matrix):
 
 
 def _give_material(obj, blocks):
-    material = bpy.data.materials.new(obj.name)
+    material = compat.new_material(obj.name)
     blocks.append(material)
-    material.use_nodes = True
     mesh = obj.data
     mesh.materials.clear()
     mesh.materials.append(material)
