@@ -6,6 +6,7 @@ import bpy
 import numpy
 import pytest
 from conftest import module
+from file_tools import export_hmesh, import_hmesh
 from mathutils.kdtree import KDTree
 from test_level_editing import activate, by_name, edit, move, places, refused
 from test_make_mesh import carried, painted
@@ -193,6 +194,32 @@ def test_an_adaptive_one_whose_last_irregular_level_has_larger_quads(world):
     assert numpy.array(weights)[tops].min() == pytest.approx(0.5, abs=0.01)
 
 
+def test_an_adaptive_cube_keeps_its_edges(world):
+    _, _, preview = world.remesh(cube(world), vertices=1200, refinement="ADAPTIVE")
+    [obj] = convert(world, preview)
+    check_cube(obj.data)
+    points = shape(obj)
+    assert numpy.abs(numpy.abs(points).max(axis=1) - 1).max() < 1e-5
+
+
+@pytest.mark.parametrize("refinement", ["UNIFORM", "ADAPTIVE"])
+def test_of_an_imported_stream(world, tmp_path, refinement):
+    """There is no source and no map: what is larger goes on by subdivision."""
+    _, _, preview = world.remesh(world.scan(), refinement=refinement)
+    path = tmp_path / "stream.hmesh"
+    export_hmesh(world, preview, path, kind="STREAM")
+    _, levels, imported = import_hmesh(world, path)
+    finest = levels[list(levels)[-1]]
+    [obj] = convert(world, imported)
+    if refinement == "UNIFORM":
+        same_surface(obj, finest)
+    assert world.distance(obj, imported)["l2"] < 2e-3
+    # Baked from Multires, for want of a scan.
+    assert bpy.ops.hybrid_mesh.bake(source="MULTIRES") == {"FINISHED"}
+    world.select(imported)
+    refused(bpy.ops.hybrid_mesh.bake, "is not known")
+
+
 def test_edited_levels_go_along(world):
     _, levels, preview = world.remesh(world.scan())
     activate(world, levels[0])
@@ -231,6 +258,18 @@ def test_what_is_sculpted_is_saved(world, tmp_path):
     obj = bpy.data.objects[name]
     assert numpy.array_equal(places(obj), base)
     assert numpy.abs(shape(obj) - wanted).max() < 1e-5
+
+
+@pytest.mark.parametrize("hide", ["exclude", "hide_viewport"])
+def test_beside_a_hierarchy_that_is_hidden(world, hide):
+    collection, levels, _ = world.remesh(world.scan())
+    folder = bpy.data.collections.new("folder")
+    bpy.context.scene.collection.children.link(folder)
+    bpy.context.scene.collection.children.unlink(collection)
+    folder.children.link(collection)
+    setattr(bpy.context.view_layer.layer_collection.children["folder"], hide, True)
+    [obj] = convert(world, bpy.data.objects["scan"])
+    same_surface(obj, levels[-1])
 
 
 def test_several_at_once_and_what_is_refused_among_them(world):

@@ -12,7 +12,11 @@ def make_object(context, collection, mesh, suffix, level):
     """An object of a mesh that was made of a level, where the hierarchy stands."""
     mesh.name = with_suffix(name_of(collection), suffix)
     obj = bpy.data.objects.new(mesh.name, mesh)
-    _collection_around(context, collection).objects.link(obj)
+    around, scene = _collection_around(context, collection), context.scene.collection
+    around.objects.link(obj)
+    context.view_layer.update()
+    if around != scene and not (objects.in_view_layer(obj, context.view_layer) and obj.visible_get()):
+        scene.objects.link(obj)  # That collection is hidden or left out of the view layer.
     # The preview is what is seen of a hierarchy, and may have been moved by itself.
     stands = collection.hybrid_mesh.preview or level_object(collection, level)
     if stands is not None:
