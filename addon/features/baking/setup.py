@@ -20,7 +20,6 @@ _ISLAND_MARGIN = 0.02  # of an island's cell, on every side: what the patches' U
 _LEAST_GAP = 1.0  # pixels around an island: bilinear filtering takes in half of one
 _AUTOMATIC_CELL = 96  # pixels that an island's cell has where the size is automatic
 _AUTOMATIC_SIZES = (1024, 4096)
-_MARGIN = 16  # pixels
 _MOST_EXTRUSION = 0.05  # of the diagonal: handles that open on finer levels lie farther away, and rays from there would meet other parts
 _ROOM = 1.25  # times the Hausdorff distance
 _SAMPLES = 20000
@@ -59,7 +58,10 @@ def bake(context, collection, settings):
     arrays_of_level = at_hand.hierarchy.level(name)
     if not numpy.array_equal(meshes.mesh_arrays(level.data).offsets, arrays_of_level["offsets"]):
         raise ValueError(f"{level.name} has other faces than its level: reset or remesh it")
-    size = _image_size(settings.size, _islands_a_side(arrays_of_level))
+    side = _islands_a_side(arrays_of_level)
+    size = _image_size(settings.size, side)
+    # Pixels around an island are filled up to the middle between it and the next one, and one more.
+    margin = math.ceil(size / side * _ISLAND_MARGIN) + 1
     blocks = []
     obj = made.make_object(context, collection, level.data.copy(), SUFFIX, name)
     try:
@@ -69,7 +71,7 @@ def bake(context, collection, settings):
         with baking.bench(context) as bench:
             high = _surface(context, bench, source, settings.smooth and not sculpted)
             far = _distance(collection, at_hand, name, obj, high, sculpted)
-            images = _bake_images(bench, obj, high, far, size, settings, blocks)
+            images = _bake_images(bench, obj, high, far, size, margin, settings, blocks)
         _wire(obj, images)
     except BaseException:
         made.remove(obj)
@@ -182,16 +184,16 @@ def _distance(collection, at_hand, name, low, high, sculpted):
     return min(max(_ROOM * found, 1e-4), _MOST_EXTRUSION) * diagonal
 
 
-def _bake_images(bench, obj, high, far, size, settings, blocks):
+def _bake_images(bench, obj, high, far, size, margin, settings, blocks):
     title = obj.name
     normals = bpy.data.images.new(f"{title} normals", size, size, alpha=False, float_buffer=settings.floats, is_data=True)
     blocks.append(normals)
-    bench.bake("NORMAL", obj, normals, high, far, _MARGIN)
+    bench.bake("NORMAL", obj, normals, high, far, margin)
     normals.pack()
     images = [normals]
     if settings.displacement:
         values, known = baking.heights(bench, obj, high, size, far)
-        values = baking.grown(values, known, _MARGIN)
+        values = baking.grown(values, known, margin)
         image = bpy.data.images.new(f"{title} displacement", size, size, alpha=False, float_buffer=True, is_data=True)
         blocks.append(image)
         baking.set_pixels(image, numpy.stack([values, values, values, numpy.ones_like(values)], axis=-1))
