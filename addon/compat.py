@@ -10,6 +10,7 @@ HAS_COMMAND_LINE = bpy.app.version >= (4, 2, 0)
 _HAS_NODE_INTERFACE = bpy.app.version >= (4, 0, 0)
 _HAS_UV_VECTORS = bpy.app.version >= (3, 5, 0)
 _HAS_EDGE_ATTRIBUTES = bpy.app.version >= (4, 0, 0)
+_HAS_NODES_ALWAYS = bpy.app.version >= (5, 0, 0)
 _HAS_AUTO_SMOOTH = bpy.app.version < (4, 1, 0)
 
 
@@ -33,6 +34,23 @@ def split_normals(mesh):
     if _HAS_AUTO_SMOOTH:
         mesh.use_auto_smooth = True
         mesh.auto_smooth_angle = math.pi
+
+
+def new_material(name):
+    """A material with the nodes that Blender gives a new one."""
+    material = bpy.data.materials.new(name)
+    if not _HAS_NODES_ALWAYS:
+        material.use_nodes = True
+    return material
+
+
+def split_normals_above(mesh, angle):
+    """Has a smooth mesh's normals split at edges at which it turns by more than an angle."""
+    if _HAS_AUTO_SMOOTH:
+        mesh.use_auto_smooth = True
+        mesh.auto_smooth_angle = angle
+    else:
+        mesh.set_sharp_from_angle(angle=angle)
 
 
 def new_level_input(group, name, description, most):

@@ -6,6 +6,7 @@ import contextlib
 import bpy
 
 from . import compat, jobs
+from .features.baking import operators as baking_operators
 from .features.files import operators as file_operators
 from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
@@ -17,9 +18,11 @@ from .features.levels import panel as level_panel
 from .features.levels import properties as level_properties
 from .features.levels import stored as stored_levels
 from .features.levels import streams as level_streams
+from .features.multires import operators as multires_operators
 from .features.remesh import operators as remesh_operators
 from .features.remesh import panel as remesh_panel
 from .features.remesh import properties as remesh_properties
+from .features.retarget import operators as retarget_operators
 from .features.topology import operators as topology_operators
 from .features.topology import panel as topology_panel
 from .features.topology import properties as topology_properties
@@ -41,6 +44,9 @@ CLASSES = (
     level_operators.HYBRID_MESH_OT_update_levels,
     level_operators.HYBRID_MESH_OT_reset_level,
     mesh_operator.HYBRID_MESH_OT_make_mesh,
+    multires_operators.HYBRID_MESH_OT_convert_to_multires,
+    baking_operators.HYBRID_MESH_OT_bake,
+    retarget_operators.HYBRID_MESH_OT_retarget,
     file_operators.HYBRID_MESH_OT_import_hmesh,
     file_operators.HYBRID_MESH_OT_export_hmesh,
     layout_operators.HYBRID_MESH_OT_draw_layout,

@@ -59,9 +59,14 @@ def reversed_corners(offsets):
 
 def reversed_edges(offsets):
     """The same for edges, which go by the corner that they start from in their face: the edge from new corner i is that from old corner result[i]."""
+    return reversed_corners(offsets)[following_corners(offsets)]
+
+
+def following_corners(offsets):
+    """The next corner of its face, for each corner."""
     following = numpy.arange(1, offsets[-1] + 1, dtype=offsets.dtype)
     following[offsets[1:] - 1] = offsets[:-1]
-    return reversed_corners(offsets)[following]
+    return following
 
 
 def closest_weights(points, triangles, inside=True):
@@ -148,6 +153,24 @@ def surface_islands(corner_vertices, corner_values):
         if numpy.array_equal(lower, label):
             return label[corners[:, 0]]
         label = lower
+
+
+def seam_edges(corner_vertices, corner_edges, following, corner_values, edges):
+    """Whether each of `edges` edges lies between faces that have different values (as of a UV map) at one of its ends.
+
+    corner_vertices, corner_edges (k,): the vertex of each corner, and the edge from it to the face's next corner, which is `following`.
+    """
+    ends = numpy.concatenate([corner_vertices, corner_vertices[following]])
+    values = numpy.unique(numpy.concatenate([corner_values, corner_values[following]]), axis=0, return_inverse=True)[1].ravel()
+    # One value at an end of an edge, or several.
+    places = numpy.stack([numpy.tile(corner_edges, 2).astype(numpy.int64), ends.astype(numpy.int64)], axis=1)
+    places, place = numpy.unique(places, axis=0, return_inverse=True)
+    least, most = numpy.full(len(places), len(values)), numpy.full(len(places), -1)
+    numpy.minimum.at(least, place.ravel(), values)
+    numpy.maximum.at(most, place.ravel(), values)
+    marked = numpy.zeros(edges, dtype=bool)
+    marked[places[least != most, 0]] = True
+    return marked
 
 
 def majority(values):

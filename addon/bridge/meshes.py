@@ -52,17 +52,26 @@ def read_source(obj, depsgraph, collect=None, density=None):
     if mesh is None:
         raise SourceError("it has no mesh")
     try:
-        if not mesh.polygons:
-            raise SourceError("it has no faces")
-        points = values_of(mesh.vertices, "co", 3).astype(numpy.float64)
-        corners = values_of(mesh.loops, "vertex_index", 1, numpy.int32)
-        mesh.calc_loop_triangles()
-        loops = values_of(mesh.loop_triangles, "loops", 3, numpy.int32)
-        polygons = values_of(mesh.loop_triangles, "polygon_index", 1, numpy.int32)
-        carried = collect(obj, mesh) if collect else None
-        densities = density(obj, mesh) if density else None
+        return _source_of(obj, mesh, matrix, collect, density)
     finally:
         evaluated.to_mesh_clear()
+
+
+def read_mesh(obj, matrix, collect=None):
+    """The same of an object's mesh as it stands, without modifiers, and as if the object had that matrix."""
+    return _source_of(obj, obj.data, matrix, collect, None)
+
+
+def _source_of(obj, mesh, matrix, collect, density):
+    if not mesh.polygons:
+        raise SourceError("it has no faces")
+    points = values_of(mesh.vertices, "co", 3).astype(numpy.float64)
+    corners = values_of(mesh.loops, "vertex_index", 1, numpy.int32)
+    mesh.calc_loop_triangles()
+    loops = values_of(mesh.loop_triangles, "loops", 3, numpy.int32)
+    polygons = values_of(mesh.loop_triangles, "polygon_index", 1, numpy.int32)
+    carried = collect(obj, mesh) if collect else None
+    densities = density(obj, mesh) if density else None
     if mirrors(matrix):
         loops = loops[:, ::-1]
     loops = numpy.ascontiguousarray(loops)
@@ -140,6 +149,11 @@ def mark_sharp(mesh, sharp):
     collection, field = compat.new_edge_creases(mesh)
     collection.foreach_set(field, marked.astype(numpy.float32))
     compat.split_normals(mesh)
+
+
+def mark_seams(mesh, marked):
+    """Sets which edges are seams, a bool an edge."""
+    mesh.edges.foreach_set("use_seam", marked)
 
 
 def add_uv(mesh, name, values):

@@ -15,7 +15,8 @@ def same_place(source):
         obj.rotation_mode = source.rotation_mode
         if source.parent is not None:
             obj.parent = source.parent
-            obj.parent_type = source.parent_type
+            # What an armature moves by being the parent has been moved already, when it was measured.
+            obj.parent_type = "OBJECT" if source.parent_type == "ARMATURE" else source.parent_type
             if source.parent_type == "BONE":
                 obj.parent_bone = source.parent_bone
             elif source.parent_type in {"VERTEX", "VERTEX_3"}:

@@ -4,9 +4,10 @@
 from dataclasses import dataclass, field
 
 import numpy
+from mathutils.bvhtree import BVHTree
 
 from .. import compat
-from . import meshes
+from . import kept_places, meshes
 from .arrays import closest_weights, majority, matching_faces, surface_islands, triangle_neighbours, walk
 
 _FLOATING = {"FLOAT", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
@@ -44,15 +45,29 @@ def collect(obj, mesh):
         if floating or (attribute.data_type in _WHOLE and attribute.domain == "FACE"):
             values = meshes.get_attribute(mesh, attribute.name)
             carried.attributes.append((attribute.name, attribute.data_type, attribute.domain, values))
-    names = [group.name for group in obj.vertex_groups]
-    if names:
-        weights = numpy.zeros((len(names), len(mesh.vertices)), dtype=numpy.float32)
-        for vertex in mesh.vertices:
-            for element in vertex.groups:
-                if element.group < len(names):
-                    weights[element.group, vertex.index] = element.weight
-        carried.groups = dict(zip(names, weights))
+    carried.groups = group_weights(obj, mesh)
     return carried
+
+
+def group_weights(obj, mesh):
+    """Vertex groups of an object's evaluated mesh: name: (vertices,)."""
+    names = [group.name for group in obj.vertex_groups]
+    weights = numpy.zeros((len(names), len(mesh.vertices)), dtype=numpy.float32)
+    for vertex in mesh.vertices if names else ():
+        for element in vertex.groups:
+            if element.group < len(names):
+                weights[element.group, vertex.index] = element.weight
+    return dict(zip(names, weights))
+
+
+def set_group(obj, name, weights):
+    """Gives an object a vertex group with these weights (vertices,), in the place of one of that name."""
+    old = obj.vertex_groups.get(name)
+    if old is not None:
+        obj.vertex_groups.remove(old)
+    group = obj.vertex_groups.new(name=name)
+    for vertex in numpy.nonzero(weights > 0)[0]:
+        group.add([int(vertex)], float(weights[vertex]), "REPLACE")
 
 
 def carrier(source, repaired):
@@ -62,28 +77,51 @@ def carrier(source, repaired):
     """
     faces = matching_faces(repaired[0], repaired[2].reshape(-1, 3), source.mesh.points, source.mesh.indices.reshape(-1, 3))
     neighbours = triangle_neighbours(source.mesh.indices.reshape(-1, 3))
-    islands = {name: surface_islands(source.mesh.indices, uv[source.triangle_loops].reshape(-1, 2)) for name, uv in source.carried.uvs.items()}
+    islands = _islands(source)
 
     def carry(obj, arrays):
         found = arrays.get("source_face")
-        if found is not None and len(faces):
-            _Place(source, arrays, faces, neighbours).carry(obj, islands)
+        if found is None or not len(faces):
+            return
+        triangle = faces[numpy.clip(found, 0, len(faces) - 1)]
+        triangle = numpy.where((found >= 0) & (triangle >= 0), triangle, 0)
+        # The fit has moved the vertices a little since they were put on their triangles.
+        triangle = walk(numpy.asarray(arrays["points"]), triangle, source.mesh.points, source.mesh.indices.reshape(-1, 3), neighbours)
+        place = Places(source, arrays, triangle)
+        place.carry(obj, islands)
+        kept_places.keep(obj.data, place.corners, place.weights, len(source.mesh.points))
 
     return carry
 
 
-class _Place:
-    """Where each vertex of a level lies on the source."""
+def nearest_carrier(source):
+    """The same where nothing but the places of the vertices tells where they lie on the source: each takes the nearest one."""
+    find, islands = nearest_triangles(source.mesh), _islands(source)
 
-    def __init__(self, source, arrays, faces, neighbours):
+    def carry(obj, arrays):
+        Places(source, arrays, find(arrays["points"])).carry(obj, islands)
+
+    return carry
+
+
+def nearest_triangles(mesh):
+    """A function that finds, for points, the nearest triangle of triangle MeshArrays each."""
+    tree = BVHTree.FromPolygons(mesh.points.tolist(), mesh.indices.reshape(-1, 3).tolist(), all_triangles=True)
+    return lambda points: numpy.array([tree.find_nearest(point)[2] for point in numpy.asarray(points).tolist()], dtype=numpy.int64)
+
+
+def _islands(source):
+    return {name: surface_islands(source.mesh.indices, uv[source.triangle_loops].reshape(-1, 2)) for name, uv in source.carried.uvs.items()}
+
+
+class Places:
+    """Where each vertex of a level (a MeshDict) lies on the source: over which triangle, and with what weights of its corners."""
+
+    def __init__(self, source, arrays, triangle):
         self.source, self.mesh, self.carried = source, source.mesh, source.carried
         self.points = numpy.asarray(arrays["points"])
-        found = numpy.asarray(arrays["source_face"])
-        triangle = faces[numpy.clip(found, 0, len(faces) - 1)]
-        triangles = self.mesh.indices.reshape(-1, 3)
-        # The fit has moved the vertices a little since they were put on their triangles.
-        self.triangle = walk(self.points, numpy.where((found >= 0) & (triangle >= 0), triangle, 0), self.mesh.points, triangles, neighbours)
-        self.corners = triangles[self.triangle]
+        self.triangle = triangle
+        self.corners = self.mesh.indices.reshape(-1, 3)[triangle]
         self.weights = closest_weights(self.points, self.mesh.points[self.corners])
         self.offsets, self.indices = numpy.asarray(arrays["offsets"]), numpy.asarray(arrays["indices"])
 
@@ -110,10 +148,7 @@ class _Place:
         if active:
             mesh.color_attributes.active_color_index = mesh.color_attributes.find(active)
         for name, weights in self.carried.groups.items():
-            group = obj.vertex_groups.new(name=name)
-            carried = self.by_vertex(weights)
-            for vertex in numpy.nonzero(carried > 0)[0]:
-                group.add([int(vertex)], float(carried[vertex]), "REPLACE")
+            set_group(obj, name, self.by_vertex(weights))
 
     def by_vertex(self, values):
         return numpy.einsum("vk,vk...->v...", self.weights, values[self.corners])

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where the user is and looks: mode, selection, 3D views."""
 
+import contextlib
+
 import bpy
 import mathutils
 
@@ -40,3 +42,16 @@ def look_at(context, surface, place, size):
         view.view_location = place
         view.view_distance = 10 * size
     return len(views)
+
+
+@contextlib.contextmanager
+def waiting(context):
+    """Has the pointer say that something takes a while."""
+    window = None if bpy.app.background else context.window
+    if window is not None:
+        window.cursor_set("WAIT")
+    try:
+        yield
+    finally:
+        if window is not None:
+            window.cursor_set("DEFAULT")

@@ -11,6 +11,7 @@
 #include "bindings/conversions.h"
 #include "bindings/hierarchy.h"
 #include "bindings/job.h"
+#include "subdivision/completion.h"
 
 namespace py = pybind11;
 
@@ -34,6 +35,16 @@ PythonHierarchy from_quads(const py::object& points, const py::object& quads) {
 void refine_to(PythonHierarchy& hierarchy, int level) {
   run_interruptibly([&](Context& context) {
     hierarchy.replace([&](const HybridMesh& mesh) { return refine(mesh, level, Progress(context)); });
+    return true;
+  });
+}
+
+void complete(PythonHierarchy& hierarchy) {
+  run_interruptibly([&](Context& context) {
+    hierarchy.replace([&](const HybridMesh& mesh) {
+      // Maps know nothing of levels that were put elsewhere.
+      return completed(mesh, hierarchy.notes().edited ? UnrefinedQuads::Subdivided : UnrefinedQuads::OnMaps, Progress(context));
+    });
     return true;
   });
 }
@@ -76,6 +87,12 @@ constexpr const char* kRefine = R"(Refines all quads until they have at least th
 
 New points are placed by Catmull-Clark subdivision, level by level; points that are there stay. The final mesh is the finest level then.)";
 
+constexpr const char* kComplete = R"(Refines all quads of an adaptive hierarchy until they are of one level.
+
+That is the finest level there is; one more where hanging nodes have split quads in four.
+Quads that are there stay where they are. What was not refined goes on where its maps have it, on the surface; without maps, and where levels were edited,
+by Catmull-Clark subdivision of the level before. A uniform hierarchy stays as it is.)";
+
 constexpr const char* kBoundary = R"(The sides around quads of one level that form a disk, counter-clockwise, as an array (n, 2) of quads and sides.
 
 Side s of a quad runs from its corner s to the next. The first is `start`, or that of the first quad that has one.)";
@@ -111,6 +128,7 @@ void bind_modelling(py::module_& module) {
   type.def(py::init(&from_quads), arg("points"), arg("quads"),
            "A hierarchy of one level, N0: points (n, 3) and quads (m, 4), counter-clockwise, that are a 2-manifold.")
       .def("refine", &refine_to, arg("level"), kRefine)
+      .def("complete", &complete, kComplete)
       .def("boundary", &boundary_of, arg("quads"), arg("start") = py::none(), kBoundary);
   const auto def_operation = [&](const char* name, const auto& function, const char* what, const auto&... arguments) {
     type.def(name, function, arguments..., (std::string(what) + kOperation).c_str());

@@ -106,12 +106,16 @@ std::vector<bool> operations_below(const HybridMesh& hierarchy, int level) {
   return result;
 }
 
-void refine_all(HybridMesh& hierarchy, int level) {
+void check_quad_count(const HybridMesh& hierarchy, int level) {
   double quads = 0;
   for (const int leaf : hierarchy.leaves()) quads += std::ldexp(1.0, 2 * std::max(0, level - hierarchy.level(leaf)));
   if (quads > static_cast<double>(max_subdivided_quads))
     throw Error(ErrorCode::Unsupported, level_name(level) + " would have " + std::to_string(static_cast<std::int64_t>(quads)) + " quads; at most " +
                                             std::to_string(max_subdivided_quads) + " are made");
+}
+
+void refine_all(HybridMesh& hierarchy, int level) {
+  check_quad_count(hierarchy, level);
   hierarchy.refine_uniform(level);
 }
 

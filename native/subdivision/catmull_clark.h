@@ -71,6 +71,8 @@ inline constexpr std::int64_t max_subdivided_quads = std::int64_t{1} << 23;
 
 // Refines quads until all leaves have at least this level. Throws Error{Unsupported} if there would be more than max_subdivided_quads.
 void refine_all(HybridMesh& hierarchy, int level);
+// Throws as refine_all() does.
+void check_quad_count(const HybridMesh& hierarchy, int level);
 
 // The choice that skips the enabled operations of a level and all finer ones.
 std::vector<bool> operations_below(const HybridMesh& hierarchy, int level);

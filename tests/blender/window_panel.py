@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panels draw, before and after a remesh, with a poor result, for a region of a level, an edited level, and with a list of loops; the preview's level changes what the view shows."""
+"""The sidebar panels draw, before and after a remesh, with a poor result, for a region of a level, an edited level, a mesh made of one, and with a list of loops; the preview's level changes what the view shows."""
 
 import json
 import os
@@ -82,6 +82,14 @@ def steps():
     yield 0.5
     preview = bpy.data.objects["sphere.preview"]
     assert abs(preview.dimensions.z / height - 1) < 0.2
+    # An ordinary mesh that was made of it.
+    with bpy.context.temp_override(**stepper.view()):
+        bpy.context.view_layer.objects.active = preview
+        preview.select_set(True)
+        assert bpy.ops.hybrid_mesh.make_mesh("INVOKE_DEFAULT", True) == {"FINISHED"}
+    yield 1
+    stepper.screenshot("panel_made")
+    bpy.data.objects.remove(bpy.context.object)
     for cls in (remesh_panel.HYBRID_MESH_PT_remesh, remesh_panel.HYBRID_MESH_PT_advanced):
         bpy.utils.register_class(cls)
     # Alone, so that it is not below the window's edge.

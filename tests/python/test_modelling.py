@@ -415,3 +415,28 @@ def can_be_towered(hierarchy, quad):
         return len(hierarchy.boundary([quad])) == 4
     except _native.InvalidInput:
         return False
+
+
+@pytest.mark.parametrize("faces", ["quads", "transition"])
+def test_an_adaptive_hierarchy_is_completed(faces):
+    surface = bent_sheet()
+    hierarchy = _native.remesh(*surface, {"vertices": 1500, "refinement": "adaptive", "faces": faces}).hierarchy
+    before, final = hierarchy.copy(), hierarchy.final_mesh()
+    hierarchy.complete()
+    assert hierarchy.check() == []
+    names = [name for name in hierarchy.level_names if name[0] == "N"]
+    assert len(names) - len([name for name in before.level_names if name[0] == "N"]) == (faces == "quads")
+    counts = [len(hierarchy.level(name)["offsets"]) - 1 for name in names]
+    assert all(finer == 4 * coarser for coarser, finer in zip(counts, counts[1:])) and hierarchy.operation_count == 0
+    made = hierarchy.final_mesh()
+    assert np.array_equal(made["points"], hierarchy.level(names[-1])["points"])
+
+    def error(mesh):
+        return _native.compare(mesh["points"], mesh["offsets"], mesh["indices"], *surface, 20000)["l2"]
+
+    # What was large lies on the surface now.
+    assert error(made) <= error(final)
+    # Edited levels are not where the maps are: what is completed goes where they went.
+    before.set_level("N0", before.level("N0")["points"] + [0, 0, 5])
+    before.complete()
+    assert np.abs(before.final_mesh()["points"].mean(axis=0) - made["points"].mean(axis=0) - [0, 0, 5]).max() < 0.01

@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import contextlib
 import os
 import traceback
 
@@ -57,7 +56,7 @@ class HYBRID_MESH_OT_import_hmesh(bpy.types.Operator, ImportHelper):
     def execute(self, context):
         view.to_object_mode(context)
         built, errors = [], []
-        with _waiting(context):
+        with view.waiting(context):
             for path in self._paths():
                 try:
                     built.append(importing.import_file(context, path, self.most_bytes if self.part == "PREFIX" else 0))
@@ -181,15 +180,3 @@ def _line(error, path):
     if not isinstance(error, OSError) and not expected(error):
         traceback.print_exception(error)
     return readable(f"{os.path.basename(path)}: {explain(error, path)}")
-
-
-@contextlib.contextmanager
-def _waiting(context):
-    window = None if bpy.app.background else context.window
-    if window is not None:
-        window.cursor_set("WAIT")
-    try:
-        yield
-    finally:
-        if window is not None:
-            window.cursor_set("DEFAULT")

@@ -4,9 +4,9 @@
 import bpy
 from bpy.props import EnumProperty
 
-from ...bridge import levels, objects, placement, view
-from ...bridge.names import with_suffix
-from .properties import hierarchy_of, is_level, level_number, name_of
+from ...bridge import objects, view
+from . import made
+from .properties import hierarchy_of
 
 LEVELS = (
     ("SHOWN", "Shown Level", "The level that the preview shows"),
@@ -33,32 +33,11 @@ class HYBRID_MESH_OT_make_mesh(bpy.types.Operator):
     def execute(self, context):
         view.to_object_mode(context)  # What is edited in another mode is not in the mesh yet.
         collection = hierarchy_of(objects.active(context))
-        level = _level_object(collection, self.level)
+        level = made.shown_level(collection) if self.level == "SHOWN" else made.finest_level(collection)
         if level is None:
             self.report({"ERROR"}, f"{collection.name}: the object of that level is gone")
             return {"CANCELLED"}
-        name = with_suffix(name_of(collection), "_quads")
-        mesh = level.data.copy()
-        mesh.name = name
-        obj = bpy.data.objects.new(name, mesh)
-        _collection_around(context, collection).objects.link(obj)
-        # The preview is what is seen of a hierarchy, and may have been moved by itself.
-        placement.same_place(collection.hybrid_mesh.preview or level)(obj)
+        obj = made.make_object(context, collection, level.data.copy(), "_quads", level.hybrid_mesh.level)
         view.select_only(context, obj)
-        self.report({"INFO"}, f"{obj.name}: {len(mesh.vertices):,} vertices, of {level.name}")
+        self.report({"INFO"}, f"{obj.name}: {len(obj.data.vertices):,} vertices, of {level.name}")
         return {"FINISHED"}
-
-
-def _level_object(collection, level):
-    """The object of a level, or None where it is gone."""
-    preview = collection.hybrid_mesh.preview
-    if level == "SHOWN":
-        shown = levels.shown_object(preview) if preview is not None else None
-        return shown if is_level(shown) else None
-    return max((obj for obj in collection.objects if is_level(obj)), key=lambda obj: level_number(obj.hybrid_mesh.level), default=None)
-
-
-def _collection_around(context, collection):
-    """The collection that a hierarchy is in."""
-    scene = context.scene.collection
-    return next((one for one in (scene, *scene.children_recursive) if collection in one.children.values()), scene)

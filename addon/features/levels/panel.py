@@ -17,11 +17,18 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return properties.hierarchy_of(context.object) is not None
+        return properties.hierarchy_of(context.object) is not None or properties.origin_of(context.object) is not None
 
     def draw(self, context):
         layout = self.layout
         collection = properties.hierarchy_of(context.object)
+        if collection is None:
+            origin = properties.origin_of(context.object)
+            layout.label(text=f"Made of {origin.name}, {context.object.hybrid_mesh.made_level}", icon="OUTLINER_COLLECTION")
+            column = layout.column(align=True)
+            column.operator("hybrid_mesh.retarget")
+            column.operator("hybrid_mesh.bake")
+            return
         report = properties.report_of(collection)
         layout.label(text=collection.name, icon="OUTLINER_COLLECTION")
         preview = collection.hybrid_mesh.preview
@@ -32,7 +39,11 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
             row.operator("hybrid_mesh.update_levels")
             row.operator("hybrid_mesh.reset_level")
         self._stream(layout, collection)
-        layout.operator("hybrid_mesh.make_mesh")
+        column = layout.column(align=True)
+        column.operator("hybrid_mesh.make_mesh")
+        column.operator("hybrid_mesh.convert_to_multires")
+        column.operator("hybrid_mesh.bake")
+        column.operator("hybrid_mesh.retarget")
         self._verdict(context, layout, report)
         self._quality(layout, properties.quality_of(collection))
         self._levels(layout, report)

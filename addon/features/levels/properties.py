@@ -24,6 +24,8 @@ class HybridMeshObject(bpy.types.PropertyGroup):
     role: EnumProperty(name="Role", items=ROLES, default="NONE")
     level: StringProperty(name="Level", description="Name of the level in the hierarchy")
     hierarchy: PointerProperty(name="Hierarchy", type=bpy.types.Collection, description="Collection of the levels")
+    made_of: PointerProperty(name="Made Of", type=bpy.types.Collection, description="The hierarchy that an ordinary object was made of; it is no part of it")
+    made_level: StringProperty(name="Made Level", description="Name of the level that an ordinary object was made of")
 
 
 class HybridMeshCollection(bpy.types.PropertyGroup):
@@ -74,6 +76,11 @@ def hierarchy_of(obj):
     hierarchies = (collection for collection in bpy.data.collections if collection.is_property_set("hybrid_mesh"))
     made = [collection for collection in hierarchies if collection.hybrid_mesh.source == obj]
     return max(made, key=lambda collection: collection.name, default=None)
+
+
+def origin_of(obj):
+    """The hierarchy collection that an ordinary object was made of, or None."""
+    return obj.hybrid_mesh.made_of if obj is not None and obj.is_property_set("hybrid_mesh") else None
 
 
 def name_of(collection):
