@@ -27,11 +27,12 @@ class BitCoder {
     const std::uint32_t middle = low_ + static_cast<std::uint32_t>((static_cast<std::uint64_t>(high_ - low_) * one) >> 16);
     if constexpr (reading) {
       bit = with_zeros_ <= middle;
-      if (at_ == end_ && bit != (with_ones_ <= middle)) throw StreamEnd();
+      if (at_ == end_ && bit != (with_ones_ <= middle)) [[unlikely]]
+        throw StreamEnd();
     }
     high_ = bit ? middle : high_;
     low_ = bit ? low_ : middle + 1;
-    while (((low_ ^ high_) & 0xff000000u) == 0) shift<reading>();
+    while (((low_ ^ high_) & 0xff000000u) == 0) [[unlikely]] shift<reading>();
     return bit;
   }
   bool code_raw(bool bit) { return code(bit, 1u << 15); }

@@ -127,10 +127,10 @@ BitCoder PlaneCoder::code_items(BitCoder coder, const CoefficientLayout& layout,
     std::uint32_t own = 0;
     for (std::size_t c = 0; c < components; ++c) {
       const std::uint32_t target = all ? all->size[components * item + c] >> shift : 0;
-      if (size[c] > 0) {
+      if (size[c] > 0) [[unlikely]] {
         size[c] |= refinement_[c * 4 + std::min<std::uint32_t>(size[c] / 2 - 1, 3)].code_as<reading>(coder, target & 1);
         own = 2;
-      } else if (code_significance<reading>(coder, models[c * kinds], c == 0 ? across : along, own, level, target != 0)) {
+      } else if (code_significance<reading>(coder, models[c * kinds], c == 0 ? across : along, own, level, target != 0)) [[unlikely]] {
         known.negative[components * item + c] = coder.code_as<reading>(all && all->negative[components * item + c], 1u << 15);
         size[c] = 1;
         if (own == 0) own = 1;
