@@ -3,6 +3,10 @@
 
 #include <utility>
 
+#include "decoder/planes/coefficient_scale.h"
+#include "decoder/transform/surface_frames.h"
+#include "hierarchy/flat_points.h"
+
 namespace hybrid_mesh {
 
 namespace {
@@ -22,8 +26,14 @@ std::vector<Vec3> points_of(const Columns& columns) {
   return points;
 }
 
-Vec3 turned_in(const Frame& frame, const Vec3& v) { return {frame[0].dot(v), frame[1].dot(v), frame[2].dot(v)}; }
-Vec3 turned_out(const Frame& frame, const Vec3& c) { return c[0] * frame[0] + c[1] * frame[1] + c[2] * frame[2]; }
+LevelChain::Axes axes_of(const Frame& frame) {
+  LevelChain::Axes axes;
+  for (int i = 0; i < 3; ++i) axes[i] = Vec3(frame[i].x, frame[i].y, frame[i].z);
+  return axes;
+}
+
+Vec3 turned_in(const LevelChain::Axes& frame, const Vec3& v) { return {frame[0].dot(v), frame[1].dot(v), frame[2].dot(v)}; }
+Vec3 turned_out(const LevelChain::Axes& frame, const Vec3& c) { return c[0] * frame[0] + c[1] * frame[1] + c[2] * frame[2]; }
 
 }  // namespace
 
@@ -45,14 +55,15 @@ LevelChain::LevelChain(const HybridMesh& hierarchy) : steps_(wavelet_steps(hiera
       slides_.push_back(detail.kind != DetailKind::Inserted);
     }
   }
-  frames_.assign(weight_.size(), coordinate_axes);
+  frames_.assign(weight_.size(), axes_of(coordinate_axes));
 }
 
 void LevelChain::set_frames(int level, const std::vector<Vec3>& subdivided) {
   const WaveletStep& step = steps_[level - 1];
-  const SurfaceFrames frames(step.fine(), subdivided);
+  const std::vector<Point3> points = flat_points(subdivided);
+  const SurfaceFrames frames(step.fine().offsets, step.fine().indices, points.data(), points.size());
   for (std::size_t d = 0; d < step.details().size(); ++d)
-    if (const auto row = first_[level] + static_cast<Eigen::Index>(d); slides_[row]) frames_[row] = frames(step.details()[d].vertex);
+    if (const auto row = first_[level] + static_cast<Eigen::Index>(d); slides_[row]) frames_[row] = axes_of(frames(step.details()[d].vertex));
 }
 
 Columns LevelChain::details_of(const Columns& coefficients, int level) const {

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <Eigen/Sparse>
+#include <array>
 #include <vector>
 
-#include "codec/coefficient_scale.h"
+#include "wavelets/wavelet_step.h"
 
 namespace hybrid_mesh {
 
@@ -16,6 +17,7 @@ using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 // final mesh. Coefficients are scaled by their weights, so that of each the same change means about as much.
 class LevelChain {
  public:
+  using Axes = std::array<Vec3, 3>;  // of a frame
   explicit LevelChain(const HybridMesh& hierarchy);
 
   int depth() const { return static_cast<int>(steps_.size()); }
@@ -44,7 +46,7 @@ class LevelChain {
   std::vector<Eigen::Index> first_;
   std::vector<double> weight_;  // #rows
   std::vector<char> slides_;    // #rows
-  std::vector<Frame> frames_;   // #rows
+  std::vector<Axes> frames_;    // #rows
 };
 
 }  // namespace hybrid_mesh

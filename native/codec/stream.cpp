@@ -9,8 +9,10 @@
 #include <string>
 
 #include "codec/rate_fit.h"
-#include "codec/stream_body.h"
-#include "hierarchy/vertex_index.h"
+#include "codec/stream_analysis.h"
+#include "decoder/forest/vertex_index.h"
+#include "decoder/reader/stream_coder.h"
+#include "hierarchy/flat_points.h"
 #include "remesh/surface_samples.h"
 #include "surface/distance.h"
 
@@ -18,55 +20,23 @@ namespace hybrid_mesh {
 
 namespace {
 
-constexpr std::array<std::uint8_t, 3> magic = {'H', 'M', 'w'};
-constexpr std::uint8_t version = 1;
-constexpr std::size_t preamble = magic.size() + 1;
-
 // Samples a direction of the distances that a prefix is chosen by.
 constexpr std::int64_t samples = 50000;
 constexpr std::int64_t floor_samples = 200000;  // ... that a fitted mesh is judged by
 // Times the distance of the mesh that is given, that of a fitted one is too far; below a fraction of the diagonal it is near whatever the other is.
 constexpr double higher_floor = 1.05, no_floor = 1e-5;
 
-[[noreturn]] void corrupt(const std::string& what) { throw Error(ErrorCode::CorruptStream, "not a valid hierarchy stream: " + what); }
-
-struct Decoded {
-  std::shared_ptr<const StreamGeometry> geometry;
-  StreamContent content;
-};
-
-// `geometry`: of the same stream, if another prefix has been decoded already.
-Decoded decoded(const std::uint8_t* data, std::size_t size, std::shared_ptr<const StreamGeometry> geometry) {
-  if (size < preamble || !is_stream(data, size)) corrupt("it starts with other bytes");
-  if (data[magic.size()] == 0) corrupt("a version that never was");
-  if (data[magic.size()] > version)
-    throw Error(ErrorCode::Unsupported, "a hierarchy stream of version " + std::to_string(data[magic.size()]) + ", newer than this program");
-  BitReader reader(data + preamble, size - preamble);
-  StreamCoder coder(reader);
-  StreamContent content;
-  try {
-    HybridMesh mesh = coder.code_structure();
-    const int depth = mesh.depth();
-    coder.code_head(depth, content, nullptr);
-    if (!geometry) {
-      const std::shared_ptr<StreamGeometry> made = stream_geometry(std::move(mesh));
-      add_layouts(*made, content.remainders);
-      geometry = made;
-    }
-    coder.code_base(*geometry, content, nullptr);
-  } catch (const StreamEnd&) {
-    corrupt("it ends before its base does");
-  }
-  try {
-    coder.code_planes(*geometry, content, nullptr);
-  } catch (const StreamEnd&) {
-  }
-  return {std::move(geometry), std::move(content)};
+// Of all levels, in the world. Throws Error{CorruptStream} where numbers do not go so far.
+std::vector<std::vector<Point3>> points_of_levels(const DecodedStream& stream) {
+  std::vector<std::vector<Point3>> levels{base_points(stream.content)};
+  for (int j = 0; j < stream.geometry->depth(); ++j) levels.push_back(next_points(*stream.geometry, stream.content, j, levels.back()));
+  for (std::vector<Point3>& points : levels) place_points(stream.content.placement, points);
+  return levels;
 }
 
 // The points of a final mesh at the vertices of another that has the same ones under other names.
 template <class GivenVertex>
-std::vector<Vec3> points_at(const QuadMesh& given, const QuadMesh& mesh, const GivenVertex& given_vertex) {
+std::vector<Vec3> points_at(const QuadMesh& given, const LevelMesh& mesh, const GivenVertex& given_vertex) {
   if (given.vertex_count() != mesh.vertex_count() || given.face_count() != mesh.face_count())
     throw Error(ErrorCode::Internal, "a stream's mesh differs from the one that was given");
   const VertexIndex find(given.vertex);
@@ -108,19 +78,21 @@ bool raises_floor(const Fitted& fit, const QuadMesh& given, const Progress& prog
   return floor(fit.mesh) > higher_floor * floor(given) + no_floor;
 }
 
-PolygonSoup final_soup(const Decoded& stream) {
-  QuadMesh mesh = stream.geometry->mesh.final_mesh();
-  mesh.points = synthesise(*stream.geometry, stream.content).back();
-  for (Vec3& point : mesh.points) point = stream.content.placement.outward(point);
-  return to_soup(mesh);
+PolygonSoup final_soup(const DecodedStream& stream) {
+  const LevelMesh& mesh = stream.geometry->meshes.back();
+  PolygonSoup soup;
+  soup.points = vectors_of(points_of_levels(stream).back());
+  soup.offsets = mesh.offsets;
+  soup.indices = mesh.indices;
+  return soup;
 }
 
 // Infinity for a prefix without its base.
 double error_of(const std::vector<std::uint8_t>& bytes, std::size_t size, const std::shared_ptr<const StreamGeometry>& geometry,
                 const DistanceReference& reference, const Progress& progress) {
-  std::optional<Decoded> stream;
+  std::optional<DecodedStream> stream;
   try {
-    stream = decoded(bytes.data(), size, geometry);
+    stream = decode_content(bytes.data(), size, geometry);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::CorruptStream) throw;
     return std::numeric_limits<double>::infinity();
@@ -151,20 +123,19 @@ struct Encoded {
 Encoded encoded(const HybridMesh& hierarchy, const QuadMesh& given, const StreamOptions& options, const Progress& progress) {
   BitWriter writer;
   StreamCoder coder(writer, &hierarchy);
-  const std::shared_ptr<StreamGeometry> geometry = stream_geometry(coder.code_structure());
-  const QuadMesh mesh = geometry->mesh.final_mesh();
-  const std::vector<Vec3> points = points_at(given, mesh, [&](VertexId vertex) { return coder.given_vertex(vertex); });
+  const std::shared_ptr<StreamGeometry> geometry = stream_geometry(coder.refined_to_depth(coder.code_structure()));
+  const std::vector<Vec3> points = points_at(given, geometry->meshes.back(), [&](VertexId vertex) { return coder.given_vertex(vertex); });
   progress(0.1);
   const StreamContent all = analyse(*geometry, points);
   progress(0.3);
   StreamContent known;
-  coder.code_head(static_cast<int>(geometry->steps.size()), known, &all);
-  coder.code_base(*geometry, known, &all);
-  const std::size_t base = preamble + writer.size() + 4;
+  coder.code_head(geometry->depth(), known, &all);
+  coder.code_base(geometry->meshes[0], known, &all);
+  const std::size_t base = stream_preamble + writer.size() + 4;
   coder.code_planes(*geometry, known, &all);
   progress(0.4);
-  std::vector<std::uint8_t> bytes(magic.begin(), magic.end());
-  bytes.push_back(version);
+  std::vector<std::uint8_t> bytes(stream_magic.begin(), stream_magic.end());
+  bytes.push_back(stream_version);
   const std::vector<std::uint8_t> body = writer.finish();
   bytes.insert(bytes.end(), body.begin(), body.end());
   if (options.most_bytes > 0 && options.most_bytes < bytes.size()) {
@@ -177,8 +148,6 @@ Encoded encoded(const HybridMesh& hierarchy, const QuadMesh& given, const Stream
 }
 
 }  // namespace
-
-bool is_stream(const std::uint8_t* data, std::size_t size) { return size >= magic.size() && std::equal(magic.begin(), magic.end(), data); }
 
 std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const StreamOptions& options, const Progress& progress) {
   if (hierarchy.node_count() == 0) throw Error(ErrorCode::InvalidInput, "an empty hierarchy has no stream");
@@ -207,19 +176,14 @@ std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const Strea
 }
 
 HybridMesh decode_stream(const std::uint8_t* data, std::size_t size) {
-  const Decoded stream = decoded(data, size, nullptr);
-  HybridMesh mesh = stream.geometry->mesh;
-  const std::vector<WaveletStep>& steps = stream.geometry->steps;
-  std::vector<std::vector<Vec3>> levels = synthesise(*stream.geometry, stream.content);
+  const DecodedStream stream = decode_content(data, size);
+  const std::vector<std::vector<Point3>> levels = points_of_levels(stream);
+  HybridMesh mesh(whole_forest(*stream.geometry));
   // What the setters of positions take of a mesh.
   QuadMesh placed;
   for (std::size_t j = 0; j < levels.size(); ++j) {
-    placed.vertex = j > 0 ? steps[j - 1].fine().vertex : mesh.level_mesh(0).vertex;
-    placed.points = std::move(levels[j]);
-    for (Vec3& point : placed.points) {
-      point = stream.content.placement.outward(point);
-      if (!point.allFinite()) corrupt("a vertex farther away than numbers go");
-    }
+    placed.vertex = stream.geometry->meshes[j].vertex;
+    placed.points = vectors_of(levels[j]);
     mesh.set_level_positions(static_cast<int>(j), placed);
   }
   mesh.set_final_positions(placed);

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "base/context.h"
+#include "decoder/reader/stream_coder.h"
 #include "hierarchy/hybrid_mesh.h"
 
 namespace hybrid_mesh {
 
-// A hierarchy as one embedded stream (FORMAT.md): connectivity and a rough base, then details from coarse to fine. Every prefix that has the base
-// whole is a stream; the more there is of it, the nearer positions come. It carries the final mesh; levels have what analysis of it leaves of them
-// (see wavelet_step.h). Maps, metadata and names of vertices are not in it.
+// A hierarchy as one embedded stream (decoder/FORMAT.md): connectivity and a rough base, then details from coarse to fine. Every prefix that has the
+// base whole is a stream; the more there is of it, the nearer positions come. It carries the final mesh; levels have what analysis of it leaves of
+// them (see wavelet_step.h). Maps, metadata and names of vertices are not in it.
 
 enum class StreamFit {
   Auto,  // the final mesh is fitted for the rate (rate_fit.h) to the surface that is given, else to that under the hierarchy's maps if it lies on it
@@ -37,8 +38,5 @@ std::vector<std::uint8_t> encode_stream(const HybridMesh& hierarchy, const Strea
 // With positions of all levels and of the final mesh. Throws Error{CorruptStream} for anything that is not a stream or ends before its base does,
 // Error{Unsupported} for a later version.
 HybridMesh decode_stream(const std::uint8_t* data, std::size_t size);
-
-// Whether the bytes start as a stream does, of whatever version.
-bool is_stream(const std::uint8_t* data, std::size_t size);
 
 }  // namespace hybrid_mesh

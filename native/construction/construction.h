@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/disjoint_sets.h"
 #include "construction/addressed_graph.h"
+#include "decoder/disjoint_sets.h"
 #include "hierarchy/hybrid_mesh.h"
 #include "layout/level_state.h"
 

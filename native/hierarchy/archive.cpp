@@ -44,29 +44,6 @@ class HierarchyArchive {
     if (operations > 0) mesh.count_leaves();  // refinement alone keeps count
   }
 
-  static HybridMesh grow(HybridMesh mesh, Growth& growth, int most_nodes) {
-    int n = 0;
-    for (int j = 0; n < mesh.node_count(); ++j) {
-      for (const int end = mesh.node_count(); n < end; ++n)
-        if (growth.refined(mesh, n)) {
-          if (j == HybridMesh::max_level) refuse("too many levels");
-          if (mesh.node_count() + 4 > most_nodes) refuse("too many quads");
-          mesh.refine(n);
-        }
-      for (HybridMesh::Operation op; j < HybridMesh::max_level && growth.operation(mesh, j + 1, op.repatch); op = {}) {
-        op.repatch.level = j + 1;
-        const std::string reason = mesh.validate(op.repatch);
-        if (!reason.empty()) refuse(reason);
-        if (mesh.node_count() + static_cast<int>(op.repatch.quads.size()) > most_nodes) refuse("too many quads");
-        mesh.append(std::move(op));
-      }
-    }
-    if (mesh.operation_count() > 0) mesh.count_leaves();  // refinement alone keeps count
-    const std::string reason = mesh.find_choice_defect();
-    if (!reason.empty()) refuse(reason);
-    return mesh;
-  }
-
   static std::vector<std::array<int, 4>> base_quads(const HybridMesh& mesh) {
     std::vector<std::array<int, 4>> quads(mesh.base_count_);
     for (int q = 0; q < mesh.base_count_; ++q)
@@ -259,8 +236,6 @@ class HierarchyArchive {
 };
 
 HybridMesh HybridMesh::canonical() const { return HierarchyArchive::canonical(*this); }
-
-HybridMesh grow(HybridMesh base, Growth& growth, int most_nodes) { return HierarchyArchive::grow(std::move(base), growth, most_nodes); }
 
 HierarchyParts take_apart(const HybridMesh& mesh) { return HierarchyArchive::take_apart(mesh); }
 

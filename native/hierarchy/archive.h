@@ -30,18 +30,4 @@ HierarchyParts take_apart(const HybridMesh& mesh);
 // Throws Error{InvalidInput} if the parts make no valid hierarchy. Time and memory grow with the size of the parts.
 HybridMesh put_together(HierarchyParts parts);
 
-// Says what a hierarchy becomes while it grows in canonical order from its base: first whether each node of a level has children, in the order of
-// their numbers, then what operations the next level has.
-class Growth {
- public:
-  virtual ~Growth() = default;
-  virtual bool refined(const HybridMesh& mesh, int node) = 0;
-  // Makes the next operation of a level, with its sides; false: there are no more.
-  virtual bool operation(const HybridMesh& mesh, int level, Repatch& repatch) = 0;
-};
-
-// Grows until no node of a level has children and there are no more than `most_nodes` nodes. Throws Error{InvalidInput} where there would be more, or
-// where an operation or the whole is not valid.
-HybridMesh grow(HybridMesh base, Growth& growth, int most_nodes);
-
 }  // namespace hybrid_mesh

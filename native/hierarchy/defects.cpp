@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "hierarchy/hybrid_mesh.h"
-#include "hierarchy/leaf_polygons.h"
 
 namespace hybrid_mesh {
 

@@ -37,19 +37,6 @@ bool HybridMesh::has_maps() const {
   return std::any_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.map >= 0; });
 }
 
-HybridMesh::Square HybridMesh::square_in(int node, int ancestor) const {
-  Square square;
-  while (node != ancestor) {
-    const int up = nodes_[node].parent;
-    const int k = node - nodes_[up].child;
-    square.u = 0.5 * (square.u + (k == 1 || k == 2 ? 1 : 0));
-    square.v = 0.5 * (square.v + (k >= 2 ? 1 : 0));
-    square.width *= 0.5;
-    node = up;
-  }
-  return square;
-}
-
 MapLocation HybridMesh::locate(VertexId vertex) const {
   int node = -1;
   double u = 0, v = 0;  // in `node`

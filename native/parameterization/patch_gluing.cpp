@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "decoder/disjoint_sets.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/disjoint_sets.h"
+#include "decoder/disjoint_sets.h"
 #include "remesh/quality.h"
 #include "surface/closest_point.h"
 #include "surface/self_intersections.h"

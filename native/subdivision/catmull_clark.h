@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "decoder/transform/subdivision_masks.h"
 #include "hierarchy/hybrid_mesh.h"
 
 namespace hybrid_mesh {
@@ -13,12 +14,6 @@ namespace hybrid_mesh {
 // Catmull-Clark subdivision over the hierarchy: the regular step N^{j-1} -> M^j gives positions to M^j by the rules of subdivision, as if N^{j-1}
 // were a base mesh; the irregular step M^j => N^j keeps them and gives positions to the vertices that its operations make. The rules are defined
 // on meshes without hanging nodes, so all quads are refined: an adaptive hierarchy is continued to uniform levels in a copy.
-
-// What becomes of the boundary. Its edges are creases in either case.
-enum class BoundaryRule {
-  EdgesOnly,       // boundaries become smooth curves, cubic B-splines
-  EdgesAndCorners  // vertices of one quad stay where they are
-};
 
 // Sharpness falls by one a level, a fraction of one fades the crease out; 10 and more is infinite. An edge's parts inherit its sharpness. A crease
 // whose edge is removed by an operation ends there.

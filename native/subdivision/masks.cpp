@@ -115,28 +115,7 @@ struct Sum {
   void AddWithWeight(const Vec3& point, double weight) { value += weight * point; }
 };
 
-// A mask as OpenSubdiv sums it up: of vertices, and of points that it has made of them.
-struct MaskSum {
-  Mask value;
-  void Clear() { value.clear(); }
-  void AddWithWeight(const MaskSum& other, double weight) {
-    for (const auto& [vertex, share] : other.value) AddWithWeight(vertex, weight * share);
-  }
-  void AddWithWeight(int vertex, double weight) {
-    const auto found = std::find_if(value.begin(), value.end(), [&](const auto& entry) { return entry.first == vertex; });
-    if (found == value.end())
-      value.emplace_back(vertex, weight);
-    else
-      found->second += weight;
-  }
-};
-
 // NOLINTEND(readability-identifier-naming)
-
-// As if it were the list of all vertices.
-struct Vertices {
-  int operator[](int vertex) const { return vertex; }
-};
 
 std::unique_ptr<Far::TopologyRefiner> make_refiner(const QuadTopology& topology, const VertexFans& fans) {
   using Factory = Far::TopologyRefinerFactory<FannedTopology>;
@@ -179,10 +158,6 @@ float refined_sharpness(float sharpness) { return Sdc::Crease().SubdivideUniform
 
 RefinedPoints refine_points(const QuadTopology& topology, const VertexFans& fans, const std::vector<Vec3>& points) {
   return refined_values<Sum, RefinedPoints>(topology, fans, points.data());
-}
-
-RefinedMasks refine_masks(const QuadTopology& topology, const VertexFans& fans) {
-  return refined_values<MaskSum, RefinedMasks>(topology, fans, Vertices{});
 }
 
 LimitPoints limit_points(const QuadTopology& topology, const VertexFans& fans, const std::vector<Vec3>& points) {

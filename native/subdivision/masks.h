@@ -2,7 +2,6 @@
 // Private to subdivision/: the Catmull-Clark masks of OpenSubdiv applied to points.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "subdivision/quad_topology.h"
@@ -19,13 +18,6 @@ struct RefinedPoints {
   std::vector<Vec3> vertices, edges, faces;
 };
 RefinedPoints refine_points(const QuadTopology& topology, const VertexFans& fans, const std::vector<Vec3>& points);
-
-// The same without points: the weight of each vertex in each refined position, every vertex once.
-using Mask = std::vector<std::pair<int, double>>;
-struct RefinedMasks {
-  std::vector<Mask> vertices, edges, faces;
-};
-RefinedMasks refine_masks(const QuadTopology& topology, const VertexFans& fans);
 
 // Positions on the limit surface and two tangents, the second counter-clockwise of the first. Exact for vertices without semi-sharp features that are
 // interior and smooth with a valence of 3 or more, have two sharp edges, or stay where they are; the tangents of two sharp edges are those of the

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "base/disjoint_sets.h"
+#include "decoder/disjoint_sets.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "base/disjoint_sets.h"
+#include "decoder/disjoint_sets.h"
 #include "surface/edge_groups.h"
 #include "surface/repair_stages.h"
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "decoder/disjoint_sets.h"
 #include "surface/edge_groups.h"
 
 namespace hybrid_mesh {

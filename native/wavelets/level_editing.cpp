@@ -12,8 +12,9 @@
 
 #include "base/error.h"
 #include "base/tolerances.h"
-#include "hierarchy/vertex_index.h"
-#include "wavelets/level_prediction.h"
+#include "decoder/forest/vertex_index.h"
+#include "decoder/transform/level_prediction.h"
+#include "hierarchy/flat_points.h"
 #include "wavelets/region_motion.h"
 #include "wavelets/star_motion.h"
 #include "wavelets/wavelet_step.h"
@@ -110,10 +111,13 @@ class Editing {
   MovedMesh finer(const MovedMesh& coarse, int level) {
     MovedMesh moved(given_.level_mesh(level, LevelKind::M));
     const LevelPrediction prediction(given_, coarse.mesh, moved.mesh, level, BoundaryRule::EdgesOnly);
-    std::vector<Vec3> base = prediction.regular(coarse.mesh.points), base_after = prediction.regular(coarse.after);
-    prediction.close(base);
-    prediction.close(base_after);
-    carry(moved, base, base_after, 0);
+    const auto predicted = [&](const std::vector<Vec3>& from) {
+      std::vector<Point3> points(prediction.count());
+      prediction.regular(flat_points(from).data(), points.data());
+      prediction.close(points.data());
+      return vectors_of(points);
+    };
+    carry(moved, predicted(coarse.mesh.points), predicted(coarse.after), 0);
     keep(level, moved);
     return operated(level, std::move(moved));
   }

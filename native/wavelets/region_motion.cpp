@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/disjoint_sets.h"
+#include "decoder/disjoint_sets.h"
 #include "subdivision/harmonic_extension.h"
 #include "wavelets/star_motion.h"
 

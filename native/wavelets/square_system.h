@@ -2,7 +2,7 @@
 // Private to wavelets/.
 #pragma once
 
-#include "wavelets/wavelet_filters.h"
+#include "wavelets/step_matrices.h"
 
 namespace hybrid_mesh {
 

@@ -5,7 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "subdivision/catmull_clark.h"
+#include "decoder/transform/level_step.h"
+#include "hierarchy/hybrid_mesh.h"
 
 namespace hybrid_mesh {
 
@@ -20,20 +21,11 @@ namespace hybrid_mesh {
 // and W are those of the refined quads, with W cut off at their rim. Vertices that the closure of leaves makes are stored relative to the mean of
 // their edge's ends or leaf's corners; a coarse mesh has them at that mean where the leaves that they close are refined in the fine one.
 //
+// Synthesis is the decoder's (LevelStep); analysis is its inverse.
+//
 // Irregular operations: vertices that they make are stored relative to the harmonic extension of their operation's boundary. Those that they take
 // away have no positions to be analysed: their details are zero and not stored, and of N^{j-1}, those of them that it has lie in the mean of their
 // neighbours.
-enum class DetailKind {
-  Edge,      // a wavelet coefficient, of a side's midpoint
-  Face,      // the same, of a quad's centre
-  Inserted,  // of an operation
-  Closing    // of the closure of leaves with hanging nodes
-};
-struct DetailVertex {
-  int vertex = -1;  // of the fine mesh
-  DetailKind kind = DetailKind::Edge;
-};
-
 struct LevelAnalysis {
   std::vector<Vec3> coarse;   // #vertices of N^{j-1}
   std::vector<Vec3> details;  // #WaveletStep::details(), in the directions of the coordinates

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "base/disjoint_sets.h"
+#include "decoder/disjoint_sets.h"
 #include "surface/size_field.h"
 
 namespace hybrid_mesh {

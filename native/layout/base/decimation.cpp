@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/disjoint_sets.h"
+#include "decoder/disjoint_sets.h"
 #include "layout/base/closed_components.h"
 #include "layout/base/curve_classes.h"
 #include "layout/base/jitter.h"

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "decoder/disjoint_sets.h"
 
 namespace hybrid_mesh {
 namespace {

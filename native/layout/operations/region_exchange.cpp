@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "decoder/disjoint_sets.h"
 
 namespace hybrid_mesh {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "decoder/disjoint_sets.h"
 #include "layout/regions/disk_drawing.h"
 #include "layout/regions/ring_drawing.h"
 

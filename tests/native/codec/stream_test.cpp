@@ -13,8 +13,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "codec/base_points.h"
-#include "codec/bit_models.h"
+#include "decoder/bits/bit_models.h"
+#include "decoder/planes/base_points.h"
 #include "hierarchy/bases.h"
 #include "hierarchy/repatches.h"
 
@@ -356,6 +356,47 @@ TEST(Stream, FrozenStreamsAreRead) {
   EXPECT_LT(snap(expected.points, mesh.points), 2e-6);
   EXPECT_EQ(faces_by_place(mesh, mesh.points), faces_by_place(expected, expected.points));
   EXPECT_EQ(decoded(prefix(frozen, 60)).final_mesh().vertex_count(), expected.vertex_count());
+}
+
+// Of all levels and the final mesh: the same numbers on every machine, with any compiler.
+std::uint64_t fingerprint(const HybridMesh& mesh) {
+  std::uint64_t hash = 1469598103934665603ull;
+  const auto add = [&](const auto* numbers, std::size_t count) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(numbers);
+    for (std::size_t i = 0; i < count * sizeof *numbers; ++i) hash = (hash ^ bytes[i]) * 1099511628211ull;
+  };
+  for (int j = 0; j <= mesh.depth() + 1; ++j) {
+    const QuadMesh level = j <= mesh.depth() ? mesh.level_mesh(j) : mesh.final_mesh();
+    for (const Vec3& point : level.points) add(point.data(), 3);
+    add(level.offsets.data(), level.offsets.size());
+    add(level.indices.data(), level.indices.size());
+    add(level.vertex.data(), level.vertex.size());
+    add(level.node.data(), level.node.size());
+    add(level.sharp.data(), level.sharp.size());
+  }
+  return hash;
+}
+
+TEST(Stream, FrozenStreamsHaveTheSameBits) {
+  EXPECT_EQ(fingerprint(decoded(frozen)), 0x71c821d80f7a2379u);
+  EXPECT_EQ(fingerprint(decoded(prefix(frozen, 400))), 0xe4aa0b27293f1027u);
+  EXPECT_EQ(fingerprint(decoded(prefix(frozen, 60))), 0xb8419b09606c5abdu);
+}
+
+// No memory is made for what so few bytes cannot tell of.
+TEST(Stream, AFewBytesTellOfFewQuads) {
+  BitWriter writer;
+  for (int i = 0; i < 2; ++i) writer.code_raw(false);  // closure
+  NumberModel depth, quads;
+  depth.code(writer, 0);
+  writer.code_raw(true);   // uniform
+  writer.code_raw(false);  // no operations
+  quads.code(writer, most_stream_quads - 1);
+  Bytes bytes = {'H', 'M', 'w', 1};
+  const Bytes body = writer.finish();
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  bytes.resize(15);
+  EXPECT_EQ(refusal(bytes), ErrorCode::CorruptStream);
 }
 
 TEST(RangeCoder, ReadsWhatWasWritten) {

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "wavelets/hierarchies.h"
-#include "wavelets/wavelet_filters.h"
+#include "wavelets/step_matrices.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -154,15 +154,12 @@ TEST(WaveletStep, FiltersOfSplinesAreOrthogonal) {
   HybridMesh mesh = torus(4, 4);
   mesh.refine_uniform(2);
   for (int level = 1; level <= 2; ++level) {
-    const StepMatrix step = step_matrix(mesh, mesh.level_mesh(level - 1), level, BoundaryRule::EdgesOnly);
-    const WaveletFilters filters = wavelet_filters(mesh, step);
-    const Eigen::MatrixXd low = step.weights;
-    Eigen::MatrixXd high = Eigen::MatrixXd::Zero(low.rows(), low.rows());
-    for (int column = 0; column < high.cols(); ++column)
-      for (std::size_t e = filters.first[column]; e < filters.first[column + 1]; ++e) high(filters.entries[e].row, column) = filters.entries[e].value;
+    const QuadMesh coarse = mesh.level_mesh(level - 1), fine = mesh.level_mesh(level);
+    const LevelStep step(mesh, coarse, fine, level, BoundaryRule::EdgesOnly);
+    const Eigen::MatrixXd low = subdivision_matrix(step.prediction()), high = wavelet_matrix(step);
     EXPECT_LT((low.transpose() * high).cwiseAbs().maxCoeff(), 1e-15);
     // Of one length, roughly: of two numbers of one size none is drowned by the other.
-    EXPECT_NEAR(high.rightCols(high.cols() - step.corners).colwise().norm().maxCoeff(), low.colwise().norm().maxCoeff(), 0.1);
+    EXPECT_NEAR(high.rightCols(high.cols() - step.prediction().rows().corners()).colwise().norm().maxCoeff(), low.colwise().norm().maxCoeff(), 0.1);
   }
 }
 
