@@ -26,8 +26,8 @@ enum class Symmetry { None, Auto, Given };
 // What is mirrored: the surface on the side of the plane that its normal points to, on the other, or the mean of both.
 enum class SymmetrySide { Positive, Negative, Average };
 
-// What is tried where the first mesh is poor. Quick: nothing. Normal: other bases and smaller quads where they are needed, a few times, but not of large
-// surfaces and bases, of which a mesh takes long. Thorough: of these, too, and more often.
+// What is tried where the first mesh is poor. Quick: nothing. Normal: other bases and smaller quads where they are needed, a few times, but not of
+// large surfaces and bases, of which a mesh takes long. Thorough: of these, too, and more often.
 enum class Effort { Quick, Normal, Thorough };
 
 struct RemeshOptions {
