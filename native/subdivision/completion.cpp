@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "hierarchy/vertex_index.h"
+#include "decoder/forest/vertex_index.h"
 #include "subdivision/catmull_clark.h"
 
 namespace hybrid_mesh {

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "hierarchy/bases.h"
-#include "hierarchy/vertex_index.h"
+#include "decoder/forest/vertex_index.h"
 #include "subdivision/catmull_clark.h"
 #include "subdivision/modelling.h"
 #include "subdivision/reference.h"
