@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "hierarchy/bases.h"
 #include "decoder/forest/vertex_index.h"
+#include "hierarchy/bases.h"
 #include "subdivision/catmull_clark.h"
 #include "subdivision/modelling.h"
 #include "subdivision/reference.h"
