@@ -109,10 +109,34 @@ bool is_hopeless(const RemeshTask& task, Candidate& c) {
   return quad_quality(c.hierarchy.level_mesh(c.levels)).inverted > kHopeless;
 }
 
+// Above so many widths of a quad by which the surface sticks out of the mesh where the map puts it, no fit brings it there.
+constexpr double kUncovered = 3;
+constexpr int kMostLevelsLess = 2;
+
+// Do the maps put the final mesh's vertices where the surface is reached? A limb whose tip is in the middle of a base's quad has none there.
+bool is_covered(const RemeshTask& task, Candidate& c) {
+  c.hierarchy.refine_uniform(std::max(c.levels, c.finest));
+  const QuadMesh mesh = c.hierarchy.level_mesh(c.levels);
+  return protrusion(task.source.repaired, task.source.placement, mesh) < kUncovered * mean_width(mesh);
+}
+
+// Of the least base with which all of the surface is covered; of the target's if there is none.
+CandidateSearch covering_candidate(const RemeshTask& task, const Target& target, bool another) {
+  CandidateSearch first = search_candidate(task, target, base_requests(task.options, another));
+  if ((target.features && keeps_features(task)) || !may_be_finer(task) || !first.candidate || is_covered(task, *first.candidate)) return first;
+  for (Target finer = target; ++finer.levels_less <= kMostLevelsLess;) {
+    CandidateSearch search = search_candidate(task, finer, base_requests(task.options, another));
+    if (!search.candidate) break;
+    if (is_covered(task, *search.candidate)) return search;
+  }
+  return first;
+}
+
 // The best of what is tried for a target. `another`: with near-ties decided in another way. Not fitted where some of the topology finds no room to
 // open.
 CandidateSearch best_for(const RemeshTask& task, const Target& target, bool another) {
-  CandidateSearch search = search_candidate(task, target, base_requests(task.options, another));
+  CandidateSearch search = task.options.effort == Effort::Quick ? search_candidate(task, target, base_requests(task.options, another))
+                                                               : covering_candidate(task, target, another);
   if (!search.candidate || !search.candidate->unopened.empty()) return search;
   Candidate& best = *search.candidate;
   if (target.features && is_hopeless(task, best)) {

@@ -3,11 +3,15 @@ import json
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hybrid_mesh import _native
-from shapes import bent_sheet, cube, sphere, torus
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "blend_samples"))
+import implicit_shapes  # noqa: E402
+from shapes import bent_sheet, cube, sphere, torus  # noqa: E402
 
 SETTINGS = {"vertices": 3000}
 
@@ -336,3 +340,39 @@ def test_the_unit_and_the_place_of_a_part_do_not_matter(tmp_path, result, scale,
     made = moved.final_mesh()["points"]
     for end in (np.min, np.max):
         assert (end(made, axis=0) - [shift, -shift, shift]) / scale == pytest.approx(end(points, axis=0), abs=0.05)
+
+
+def ball_with_arms(count=5, length=4.0, step=0.07):
+    """Curved arms that taper from a quarter of the ball's radius to an eighth of that."""
+
+    radii = np.linspace(0.25, 0.03, 4)
+
+    def arm(number):
+        angle, turn = 2 * np.pi * number / count, (-1) ** number
+        outward, up = np.array([np.cos(angle), np.sin(angle), 0]), np.array([0, 0, turn * length])
+        return [0.8 * outward, (1 + 0.4 * length) * outward + 0.15 * up, (1 + 0.75 * length) * outward, (1 + length) * outward - 0.2 * up]
+
+    def distance(points):
+        found = np.linalg.norm(points, axis=-1) - 1
+        for number in range(count):
+            places = arm(number)
+            for start, end, wide, narrow in zip(places, places[1:], radii, radii[1:]):
+                found = implicit_shapes.union(found, implicit_shapes.limb(points, start, end, wide, narrow), 0.05)
+        return found
+
+    size = np.array([length + 1.3, length + 1.3, 0.3 * length + 1.4])
+    points, triangles = implicit_shapes.zero_set(distance, -size, size, step)
+    points = implicit_shapes.evened(distance, points, triangles, step)
+    return points, np.arange(0, triangles.size + 1, 3), triangles.astype(np.int32).ravel()
+
+
+def test_thin_arms_get_a_base_that_reaches_their_ends():
+    """One whose maps leave out the ends is not fitted: no fit brings it there, and what comes near is sheared."""
+    result = _native.remesh(*_native.repair(*ball_with_arms())[:3], {"vertices": 3000})
+    report = json.loads(result.report)
+    final = report["final"]
+    width = np.sqrt(1 / final["vertices"])
+    assert report["verdict"]["result"] == "good"
+    assert final["scaled_jacobian"]["p50"] > 0.93
+    assert final["hausdorff"] < width
+    assert final["l2"] < 0.02 * width
