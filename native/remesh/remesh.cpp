@@ -122,10 +122,13 @@ bool is_covered(const RemeshTask& task, Candidate& c) {
 
 // Of the least base with which all of the surface is covered; of the target's if there is none.
 CandidateSearch covering_candidate(const RemeshTask& task, const Target& target, bool another) {
-  CandidateSearch first = search_candidate(task, target, base_requests(task.options, another));
-  if ((target.features && keeps_features(task)) || !may_be_finer(task) || !first.candidate || is_covered(task, *first.candidate)) return first;
+  const RemeshOptions& options = task.options;
+  CandidateSearch first = search_candidate(task, target, base_requests(options, another));
+  const bool may_change =
+      options.effort != Effort::Quick && options.error == 0 && options.levels < 0 && may_be_finer(task) && !(target.features && keeps_features(task));
+  if (!may_change || !first.candidate || is_covered(task, *first.candidate)) return first;
   for (Target finer = target; ++finer.levels_less <= kMostLevelsLess;) {
-    CandidateSearch search = search_candidate(task, finer, base_requests(task.options, another));
+    CandidateSearch search = search_candidate(task, finer, base_requests(options, another));
     if (!search.candidate) break;
     if (is_covered(task, *search.candidate)) return search;
   }
@@ -135,8 +138,7 @@ CandidateSearch covering_candidate(const RemeshTask& task, const Target& target,
 // The best of what is tried for a target. `another`: with near-ties decided in another way. Not fitted where some of the topology finds no room to
 // open.
 CandidateSearch best_for(const RemeshTask& task, const Target& target, bool another) {
-  CandidateSearch search = task.options.effort == Effort::Quick ? search_candidate(task, target, base_requests(task.options, another))
-                                                               : covering_candidate(task, target, another);
+  CandidateSearch search = covering_candidate(task, target, another);
   if (!search.candidate || !search.candidate->unopened.empty()) return search;
   Candidate& best = *search.candidate;
   if (target.features && is_hopeless(task, best)) {
