@@ -342,10 +342,10 @@ def test_the_unit_and_the_place_of_a_part_do_not_matter(tmp_path, result, scale,
         assert (end(made, axis=0) - [shift, -shift, shift]) / scale == pytest.approx(end(points, axis=0), abs=0.05)
 
 
-def ball_with_arms(count=5, length=4.0, step=0.07):
-    """Curved arms that taper from a quarter of the ball's radius to an eighth of that."""
+def ball_with_arms(count=6, length=3.0, step=0.06):
+    """Curved arms that taper from a quarter of the ball's radius to a sixth of that."""
 
-    radii = np.linspace(0.25, 0.03, 4)
+    radii = np.linspace(0.25, 0.04, 4)
 
     def arm(number):
         angle, turn = 2 * np.pi * number / count, (-1) ** number
@@ -368,7 +368,7 @@ def ball_with_arms(count=5, length=4.0, step=0.07):
 
 def test_thin_arms_get_a_base_that_reaches_their_ends():
     """One whose maps leave out the ends is not fitted: no fit brings it there, and what comes near is sheared."""
-    result = _native.remesh(*_native.repair(*ball_with_arms())[:3], {"vertices": 3000})
+    result = _native.remesh(*_native.repair(*ball_with_arms())[:3], {"vertices": 4000})
     report = json.loads(result.report)
     final = report["final"]
     width = np.sqrt(1 / final["vertices"])
