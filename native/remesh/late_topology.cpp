@@ -135,8 +135,10 @@ class LateOpening {
     return best;
   }
 
-  // Does the mesh have the vertices for what opens to have as many quads each, for the sake of their shape alone?
+  // Does the mesh have the vertices for what opens to have as many quads each, for the sake of their shape alone? In a uniform one they are refined
+  // with all others, and a few too many cost a whole level.
   bool is_affordable(std::size_t quads) const {
+    if (task_.options.refinement == Refinement::Uniform) return false;
     const double share = kShare * static_cast<double>(bounds_.vertices) / static_cast<double>(made_.surface().open.size());
     return kVerticesAQuad * static_cast<double>(quads) <= share;
   }
