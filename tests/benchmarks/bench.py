@@ -38,12 +38,12 @@ def attempt(function, *arguments):
         return None, str(failure)
 
 
-def timed_remesh(mesh, options):
-    """What timed_remesh.py measures in a process of its own, or a Failure."""
+def apart(script, mesh, *arguments):
+    """What a script of this folder, timed_remesh.py or timed_loops.py, measures of a mesh in a process of its own, or a Failure."""
     with tempfile.TemporaryDirectory() as folder:
         source, result = Path(folder) / "in.npz", Path(folder) / "out.json"
         np.savez(source, points=mesh[0], offsets=mesh[1], indices=mesh[2])
-        code, output, *_ = tools.run(["/usr/bin/python3", tools.HERE / "timed_remesh.py", source, result, *options], {"PYTHONPATH": str(tools.STAGE)})
+        code, output, *_ = tools.run(["/usr/bin/python3", tools.HERE / script, source, result, *arguments], {"PYTHONPATH": str(tools.STAGE)})
         if code != 0:
             raise tools.Failure(f"exit code {code}: {tools.last_complaint(output)}")
         return json.loads(result.read_text())

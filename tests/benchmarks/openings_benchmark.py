@@ -35,8 +35,8 @@ def defects(levels):
 
 def row_of(model, vertices, options):
     asked = ["--vertices", str(vertices), "--base-quads", "min", *options]
-    late = bench.timed_remesh(model.triangles, [*asked, "--topology", "late"])
-    base = bench.timed_remesh(model.triangles, [*asked, "--topology", "base"])
+    late = bench.apart("timed_remesh.py", model.triangles, *asked, "--topology", "late")
+    base = bench.apart("timed_remesh.py", model.triangles, *asked, "--topology", "base")
     row = {"model": model.name, "verdict": late["verdict"]["result"], "n0_quads": late["levels"][0]["faces"]}
     for key in ("vertices", "l2", "seconds", "cpu_seconds", "peak_memory_bytes"):
         row.update({key: late[key], f"base.{key}": base[key]})

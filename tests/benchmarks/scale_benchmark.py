@@ -4,10 +4,8 @@ time grows as n log n, with n the vertices of the input, the column of seconds b
 build/bench/scale.csv."""
 
 import argparse
-import json
 import math
 import sys
-import tempfile
 from pathlib import Path
 
 import bench
@@ -35,7 +33,7 @@ def default_model():
 
 
 def remesh(points, triangles, options):
-    return bench.timed_remesh((points, np.arange(0, triangles.size + 1, 3), triangles.ravel().astype(np.int32)), options)
+    return bench.apart("timed_remesh.py", (points, np.arange(0, triangles.size + 1, 3), triangles.ravel().astype(np.int32)), *options)
 
 
 def row_of(points, measured):

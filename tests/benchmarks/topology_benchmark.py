@@ -4,14 +4,10 @@ bounding box, and what that took. Then buddha, if it is there, cut finer twice, 
 them the basis loops of MeshLib (two for each handle) if Python can import it. The rows are also written as build/bench/topology.csv."""
 
 import importlib.util
-import json
 import sys
-import tempfile
-from pathlib import Path
 
 import bench
 import numpy as np
-import tools
 from bench import native
 from finer_meshes import finer
 
@@ -30,25 +26,14 @@ FIGURES = [
 VERSUS = [("ML loops", "meshlib.loops", "{:d}"), ("ML length", "meshlib.length", "{:.4f}"), ("ML s", "meshlib.seconds", "{:.3f}")]
 
 
-def measured(mesh, *what):
-    """What timed_loops.py measures in a process of its own, or a Failure."""
-    with tempfile.TemporaryDirectory() as folder:
-        source, result = Path(folder) / "in.npz", Path(folder) / "out.json"
-        np.savez(source, points=mesh[0], offsets=mesh[1], indices=mesh[2])
-        code, output, *_ = tools.run(["/usr/bin/python3", tools.HERE / "timed_loops.py", source, result, *what], {"PYTHONPATH": str(tools.STAGE)})
-        if code != 0:
-            raise tools.Failure(f"exit code {code}: {tools.last_complaint(output)}")
-        return json.loads(result.read_text())
-
-
 def row_of(name, mesh, *what):
     points = np.asarray(mesh[0])
     diagonal = np.linalg.norm(np.ptp(points, axis=0))
-    row = measured(mesh, *what)
+    row = bench.apart("timed_loops.py", mesh, *what)
     row.update(model=name, points=len(points), genus=native.topology(*mesh)["genus"], memory_mib=row.pop("peak_memory_bytes") / 2**20)
     row.update({key: row[key] / diagonal for key in ("length", "longest") if key in row})
     if importlib.util.find_spec("meshlib") and not what and row["genus"] > 0:
-        other = measured(mesh, "meshlib")
+        other = bench.apart("timed_loops.py", mesh, "meshlib")
         row.update({"meshlib.loops": other["loops"], "meshlib.length": other["length"] / diagonal, "meshlib.seconds": other["seconds"]})
     return row
 

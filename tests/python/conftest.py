@@ -1,7 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import sys
+from pathlib import Path
+
 import pytest
 from hybrid_mesh import _native
 from shapes import bent_sheet, sphere, torus
+
+# The samples' shapes, and the measures of the benchmarks.
+ROOT = Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT / "blend_samples"), str(ROOT / "tests/benchmarks")]
 
 
 @pytest.fixture(scope="module", params=["uniform", "open", "adaptive", "operations"])

@@ -3,15 +3,12 @@ import json
 import subprocess
 import sys
 import time
-from pathlib import Path
 
+import implicit_shapes
 import numpy as np
 import pytest
 from hybrid_mesh import _native
-
-sys.path.append(str(Path(__file__).resolve().parents[2] / "blend_samples"))
-import implicit_shapes  # noqa: E402
-from shapes import bent_sheet, cube, sphere, torus  # noqa: E402
+from shapes import bent_sheet, cube, sphere, torus
 
 SETTINGS = {"vertices": 3000}
 

@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import json
-import sys
-from pathlib import Path
 
+import implicit_shapes
 import numpy as np
 import pytest
 from hybrid_mesh import _native
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "blend_samples"), str(ROOT / "tests/benchmarks")]
-import implicit_shapes  # noqa: E402
-from quality import scaled_jacobians  # noqa: E402
-from shapes import cube, mesh_of, sphere, torus  # noqa: E402
+from quality import scaled_jacobians
+from shapes import cube, mesh_of, sphere, torus
 
 
 def two_tori():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators that make ordinary objects of hierarchies have in common."""
+"""What operators have in common that make ordinary objects of hierarchies, or change these."""
 
 import bpy
 
@@ -9,9 +9,9 @@ from . import made
 
 
 class MakingOperator(bpy.types.Operator):
-    """Base of operators that make an object of each hybrid mesh chosen.
+    """Base of operators that do something with each hybrid mesh chosen, by default, or with what was made of them.
 
-    Subclasses have work(context, collection), which returns something with an `obj` and a line() for people, and leaves nothing behind if it raises.
+    Subclasses have work(context, one), which returns something with an `obj` and a line() for people, and leaves nothing behind if it raises.
     """
 
     @classmethod
@@ -21,16 +21,20 @@ class MakingOperator(bpy.types.Operator):
             return False
         return True
 
-    def work(self, context, collection):
+    def chosen(self, context):
+        """What work() is done with, one after the other."""
+        return made.chosen_hierarchies(context)
+
+    def work(self, context, one):
         raise NotImplementedError
 
     def execute(self, context):
         view.to_object_mode(context)  # What is edited in another mode is not in the mesh yet.
         done, errors = [], []
         with view.waiting(context):
-            for collection in made.chosen_hierarchies(context):
+            for one in self.chosen(context):
                 try:
-                    done.append(self.work(context, collection))
+                    done.append(self.work(context, one))
                 except Exception as error:
                     if not expected(error):
                         raise
