@@ -44,6 +44,9 @@ bool sticks_out(const RemeshTask& task, const Candidate& c, double widths) {
   return c.distance.hausdorff >= most && protrusion(task.source.repaired, task.source.placement, c.final_mesh) >= most;
 }
 
+// Of the requests for a minimal base where it is only one of the ways that are tried: the first ones are the cheapest.
+constexpr std::size_t kMinimalRequests = 2;
+
 bool misses_a_limb(const RemeshTask& task, const Candidate& c) {
   const bool likely = may_be_minimal(task) && task.source.topology.genus <= static_cast<double>(task.source.topology.components);
   return sticks_out(task, c, likely ? kMissed : kMissedByFar);
@@ -56,21 +59,27 @@ Found<Candidate> another_candidate(const RemeshTask& task) {
   const bool minimal = may_be_minimal(task);
   if (minimal) options.base = BaseSize::Minimal;
   const RemeshTask other{options, task.source, task.base, task.progress, task.watch};
-  Found<Candidate> c = search_candidate(other, {.features = false}, base_requests(options, !minimal)).candidate;
+  std::vector<BaseRequest> requests = base_requests(options, !minimal);
+  if (minimal) requests.resize(kMinimalRequests);
+  Found<Candidate> c = search_candidate(other, {.features = false}, requests).candidate;
   if (c) c = {fitted(other, std::move(*c), true), {}};
-  return c;
-}
-
-// A base of four times the quads, one level lower: it goes out into limbs in which every quad of a smaller one has another limb beside it.
-Found<Candidate> finer_candidate(const RemeshTask& task) {
-  Found<Candidate> c = search_candidate(task, {.levels_less = 1, .features = false}, base_requests(task.options, false)).candidate;
-  if (c) c = {fitted(task, std::move(*c), true), {}};
   return c;
 }
 
 bool may_be_finer(const RemeshTask& task) {
   const RemeshOptions& options = task.options;
   return options.base == BaseSize::Auto && options.refinement == Refinement::Uniform && plan_budget(options, task.source, {}).levels > 1;
+}
+
+// A base of four times the quads, one level lower: it goes out into limbs in which every quad of a smaller one has another limb beside it, and has
+// more to lay along folds.
+Found<Candidate> finer_candidate(const RemeshTask& task, const Candidate& than) {
+  const int planned = plan_budget(task.options, task.source, {.features = false}).levels;
+  const int levels = std::min(planned, than.levels) - 1;
+  if (levels < 1) return {std::nullopt, "no level is left for it"};
+  Found<Candidate> c = search_candidate(task, {.levels_less = planned - levels, .features = false}, base_requests(task.options, false)).candidate;
+  if (c) c = {fitted(task, std::move(*c), true), {}};
+  return c;
 }
 
 void keep_better(Candidate& best, Found<Candidate> other) {
@@ -130,7 +139,6 @@ CandidateSearch best_for(const RemeshTask& task, const Target& target, bool anot
   best = fitted(task, std::move(best), true);
   if (best.keeps_features || task.options.error > 0 || task.options.effort == Effort::Quick || !misses_a_limb(task, best)) return search;
   keep_better(best, another_candidate(task));
-  if (may_be_finer(task) && sticks_out(task, best, kMissedByFar)) keep_better(best, finer_candidate(task));
   return search;
 }
 
@@ -149,6 +157,61 @@ Badness badness(const RemeshTask& task, const Candidate& c) {
     b.quads_are_too_large |= reason.what == "hausdorff" || reason.what == "inverted" || reason.what == "self_intersections";
   }
   return b;
+}
+
+// How often a mesh is made anew by what the one before shows that quads need, and of which surfaces and bases.
+struct NeedBounds {
+  int tries;
+  std::int64_t base_quads;
+  std::size_t faces;
+};
+NeedBounds need_bounds(Effort effort) {
+  if (effort == Effort::Quick) return {0, 0, 0};
+  if (effort == Effort::Normal) return {2, 1500, 500000};
+  return {4, std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::size_t>::max()};
+}
+
+// Without sharp edges. Where quads are too large for the shape somewhere and that makes a uniform mesh poor, a finer base is tried; then, on the base
+// that comes nearer, smaller quads there, and again with what that mesh shows.
+CandidateSearch best_without_features(const RemeshTask& task) {
+  CandidateSearch search = best_for(task, {.features = false}, false);
+  const RemeshOptions& options = task.options;
+  const NeedBounds bounds = need_bounds(options.effort);
+  const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.levels < 0 && options.base != BaseSize::Given &&
+                          !task.source.density.sizes && !task.source.mirror && !task.base.series && task.source.repaired.faces.size() <= bounds.faces;
+  if (!search.candidate || !may_change) return search;
+  Candidate& best = *search.candidate;
+  Badness least = badness(task, best);
+  Target target{.features = false};
+  Found<Candidate> finer;  // as long as it is not the best
+  const Candidate* shows = &best;
+  if (least.quads_are_too_large && may_be_finer(task)) finer = finer_candidate(task, best);
+  if (finer) {
+    const Badness counts = badness(task, *finer);
+    if (counts.distance < least.distance) {
+      target.levels_less = plan_budget(options, task.source, target).levels - finer->levels;
+      shows = &*finer;
+    }
+    if (counts < least) {
+      best = std::move(*finer), least = counts;
+      shows = &best;
+    }
+  }
+  if (!least.quads_are_too_large || shows->hierarchy.base_count() > bounds.base_quads) return search;
+  const TriangleSurface placed = task.source.placement.to_unit(task.source.repaired);
+  Need need(placed);
+  for (int k = 0; k < bounds.tries && least.quads_are_too_large && need.learn_from(shows->final_mesh, task.progress.part(1, 1)); ++k) {
+    const RemeshTask sized{options, task.source, task.base, task.progress, task.watch, gradual_sizes(placed, need.size())};
+    Found<Candidate> found = search_candidate(sized, target, base_requests(options, false)).candidate;
+    if (!found) break;
+    found = {fitted(sized, std::move(*found), true), {}};
+    found->by_need = true;
+    const Badness counts = badness(task, *found);
+    if (!(counts < least)) break;
+    best = std::move(*found), least = counts;
+    shows = &best;
+  }
+  return search;
 }
 
 // With the sharp edges of the surface, or, where these cannot be kept or make it worse, without.
@@ -171,54 +234,17 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   }
   CandidateSearch with = std::move(*best);
   if (with.candidate && inverted(*with.candidate) < kManyInverted) return with;
-  CandidateSearch without = best_for(task, {.features = false}, false);
+  CandidateSearch without = best_without_features(task);
   if (!without.candidate || (with.candidate && least.distance <= badness(task, *without.candidate).distance))
     return with.candidate ? std::move(with) : without;
   without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
   return without;
 }
 
-// How often a mesh is made anew by what the one before shows that quads need, and of which surfaces and bases.
-struct NeedBounds {
-  int tries;
-  std::int64_t base_quads;
-  std::size_t faces;
-};
-NeedBounds need_bounds(Effort effort) {
-  if (effort == Effort::Quick) return {0, 0, 0};
-  if (effort == Effort::Normal) return {2, 1500, 500000};
-  return {4, std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::size_t>::max()};
-}
-
-// Where something makes a uniform mesh poor, once more with smaller quads there, and again with what that one shows.
-CandidateSearch best_by_need(const RemeshTask& task) {
-  CandidateSearch best = best_for(task, {}, false);
-  const RemeshOptions& options = task.options;
-  const NeedBounds bounds = need_bounds(options.effort);
-  const bool may_change = options.refinement == Refinement::Uniform && options.error == 0 && options.levels < 0 && options.base != BaseSize::Given &&
-                          !task.source.density.sizes && !task.source.mirror && !task.base.series && task.source.repaired.faces.size() <= bounds.faces;
-  if (!best.candidate || !may_change || best.candidate->hierarchy.base_count() > bounds.base_quads) return best;
-  Badness least = badness(task, *best.candidate);
-  if (!least.quads_are_too_large) return best;
-  const TriangleSurface placed = task.source.placement.to_unit(task.source.repaired);
-  Need need(placed);
-  for (int k = 0; k < bounds.tries && least.quads_are_too_large && need.learn_from(best.candidate->final_mesh, task.progress.part(1, 1)); ++k) {
-    const RemeshTask sized{options, task.source, task.base, task.progress, task.watch, gradual_sizes(placed, need.size())};
-    CandidateSearch found = search_candidate(sized, {.features = false}, base_requests(options, false));
-    if (!found.candidate) break;
-    found.candidate = {fitted(sized, std::move(*found.candidate), true), {}};
-    found.candidate->by_need = true;
-    const Badness counts = badness(task, *found.candidate);
-    if (!(counts < least)) break;
-    best = std::move(found), least = counts;
-  }
-  return best;
-}
-
 }  // namespace
 
 Found<Candidate> best_candidate(const RemeshTask& task) {
-  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_by_need(task);
+  CandidateSearch best = keeps_features(task) ? best_with_features(task) : best_without_features(task);
   // What opens late is tried in the base next.
   if (!best.candidate && !task.base.series) throw Error(best.too_many > 0 ? ErrorCode::InvalidInput : ErrorCode::Unsupported, best.candidate.reason);
   return std::move(best.candidate);

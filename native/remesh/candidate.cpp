@@ -264,7 +264,7 @@ const WorkingSurface& WorkingSurfaceInUse::made(const RemeshTask& task, std::int
     surface_ = {};  // what it took is free for the next one
     const auto make = [&](bool all_of_cut) {
       surface_ = make_working_surface(task.surface(), task.source.placement, faces, task.progress.part(0.05, 0.05), held_faces(task, all_of_cut),
-                                      feature_options(features, angle), task.sizes());
+                                      feature_options(task.source, features, angle), task.sizes());
     };
     make(false);
     if (const std::optional<Vec3>& mirror = task.source.mirror) {

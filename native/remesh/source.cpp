@@ -51,7 +51,7 @@ constexpr double kLeastVerticesACorner = 3, kVerticesACorner = 10;
 }  // namespace
 
 void look_for_features(Source& source, const RemeshOptions& options) {
-  std::optional<FeatureOptions> wanted = feature_options(options.features, options.feature_angle);
+  std::optional<FeatureOptions> wanted = feature_options(source, options.features, options.feature_angle);
   if (!wanted) return;
   wanted->least_length *= source.placement.diagonal;
   const FeatureGraph graph = find_features(source.repaired, *wanted);
@@ -65,9 +65,10 @@ void look_for_features(Source& source, const RemeshOptions& options) {
   source.features_are_crowded = !has(kVerticesACorner);
 }
 
-std::optional<FeatureOptions> feature_options(Features features, double angle) {
+std::optional<FeatureOptions> feature_options(const Source& source, Features features, double angle) {
   FeatureOptions options;
   if (features == Features::None) return {};
+  options.polygons = !source.mirror;  // a half's cut is a boundary of its own
   if (features == Features::Given) {
     options.angle = options.weak_angle = angle;
     options.crispness = options.least_total = 0;

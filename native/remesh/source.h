@@ -60,7 +60,7 @@ struct RemeshTask {
 };
 
 // How sharp edges are found, as the options ask; none: they are not kept.
-std::optional<FeatureOptions> feature_options(Features features, double angle);
+std::optional<FeatureOptions> feature_options(const Source& source, Features features, double angle);
 
 // Looks for sharp edges of `repaired`.
 void look_for_features(Source& source, const RemeshOptions& options);

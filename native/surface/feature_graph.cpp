@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "decoder/disjoint_sets.h"
+#include "surface/boundary_loop.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -125,51 +126,91 @@ class FeatureSearch {
 
 }  // namespace
 
-FeatureGraph find_features(const TriangleSurface& surface, const FeatureOptions& options) {
-  return feature_graph(surface, FeatureSearch(surface, options).run(), options.corner_angle);
-}
-
 namespace {
 
-bool turns(const Vec3& before, const Vec3& at, const Vec3& after, double degrees) {
+// In degrees.
+double turn(const Vec3& before, const Vec3& at, const Vec3& after) {
   const Vec3 a = at - before, b = after - at;
-  return std::atan2(a.cross(b).norm(), a.dot(b)) > degrees * kDegree;
+  return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree;
+}
+
+// Marks the boundary loops that are straight between their corners, as a plate's are and a scan's are not.
+void mark_polygons(const TriangleSurface& s, const FeatureOptions& options, std::vector<char>& edges) {
+  std::vector<char> on(s.points.size(), 0);
+  double length = 0;
+  for (const BoundaryLoop& loop : boundary_loops(s)) {
+    const int n = loop.size();
+    std::vector<double> turns(n);
+    for (int i = 0; i < n; ++i) turns[i] = turn(loop.point(i + n - 1), loop.point(i), loop.point(i + 1));
+    // From a vertex on in one direction, up to where the loop turns.
+    const auto is_straight = [&](int i, int step) {
+      double along = 0;
+      int j = i;
+      do {
+        const int next = (j + step + n) % n;
+        along += (loop.point(next) - loop.point(j)).norm();
+        j = next;
+      } while (along < options.least_length && turns[j] < options.weak_angle);
+      return along >= options.least_length;
+    };
+    double corners = 0, left = 0;
+    for (int i = 0; i < n; ++i) {
+      if (turns[i] > options.corner_angle && is_straight(i, 1) && is_straight(i, -1))
+        corners += turns[i];
+      else if (turns[i] >= options.weak_angle)
+        left += turns[i];
+    }
+    if (corners == 0 || left > options.most_left * corners) continue;
+    for (int i = 0; i < n; ++i) on[loop.vertex(i)] = 1;
+    length += loop.length();
+  }
+  if (length == 0 || length < options.least_total * std::sqrt(surface_area(s))) return;
+  edges.resize(s.opposite.size());
+  for (int h = 0; h < static_cast<int>(s.opposite.size()); ++h)
+    if (s.opposite[h] < 0 && on[s.from(h)]) edges[h] = 1;
 }
 
 }  // namespace
+
+FeatureGraph find_features(const TriangleSurface& surface, const FeatureOptions& options) {
+  std::vector<char> edges = FeatureSearch(surface, options).run();
+  if (options.polygons) mark_polygons(surface, options, edges);
+  return feature_graph(surface, std::move(edges), options.corner_angle);
+}
 
 FeatureGraph feature_graph(const TriangleSurface& surface, std::vector<char> edges, double corner_angle) {
   FeatureGraph graph;
   if (std::none_of(edges.begin(), edges.end(), [](char on) { return on; })) return graph;
   graph.corners.assign(surface.points.size(), 0);
-  std::vector<std::vector<int>> ends(surface.points.size());
-  std::vector<char> boundary(surface.points.size(), 0);
-  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h) {
-    if (surface.opposite[h] < 0) boundary[surface.from(h)] = 1;
-    if (edges[h]) ends[surface.from(h)].push_back(surface.to(h));
+  std::vector<std::vector<int>> ends(surface.points.size());  // of inner edges
+  std::vector<int> before(surface.points.size(), -1);         // along the boundary
+  const int count = static_cast<int>(surface.opposite.size());
+  for (int h = 0; h < count; ++h) {
+    if (surface.opposite[h] < 0)
+      before[surface.to(h)] = surface.from(h);
+    else if (edges[h])
+      ends[surface.from(h)].push_back(surface.to(h));
   }
-  for (std::size_t v = 0; v < ends.size(); ++v) {
-    if (ends[v].empty()) continue;
-    graph.corners[v] =
-        ends[v].size() != 2 || boundary[v] || turns(surface.points[ends[v][0]], surface.points[v], surface.points[ends[v][1]], corner_angle);
+  const auto turns = [&](int a, int v, int b) { return turn(surface.points[a], surface.points[v], surface.points[b]) > corner_angle; };
+  for (int v = 0; v < static_cast<int>(ends.size()); ++v)
+    if (!ends[v].empty()) graph.corners[v] = ends[v].size() != 2 || before[v] >= 0 || turns(ends[v][0], v, ends[v][1]);
+  for (int h = 0; h < count; ++h) {
+    if (surface.opposite[h] >= 0 || !edges[h]) continue;
+    const int v = surface.from(h);
+    graph.corners[v] |= turns(before[v], v, surface.to(h));
   }
   graph.edges = std::move(edges);
   return graph;
 }
 
-FeatureGraph with_boundary(const TriangleSurface& surface, FeatureGraph graph, double corner_angle) {
-  graph.edges.resize(surface.opposite.size());
-  graph.corners.resize(surface.points.size());
-  std::vector<int> before(surface.points.size(), -1);
-  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h)
-    if (surface.opposite[h] < 0) before[surface.to(h)] = surface.from(h);
-  for (int h = 0; h < static_cast<int>(surface.opposite.size()); ++h) {
-    if (surface.opposite[h] >= 0) continue;
-    graph.edges[h] = 1;
-    const int v = surface.from(h);
-    graph.corners[v] |= turns(surface.points[before[v]], surface.points[v], surface.points[surface.to(h)], corner_angle);
-  }
-  return graph;
+FeatureGraph with_boundary(const TriangleSurface& surface, const FeatureGraph& graph, double corner_angle) {
+  std::vector<char> edges = graph.edges;
+  edges.resize(surface.opposite.size());
+  for (std::size_t h = 0; h < edges.size(); ++h) edges[h] |= surface.opposite[h] < 0;
+  FeatureGraph all = feature_graph(surface, std::move(edges), corner_angle);
+  all.corners.resize(surface.points.size());
+  for (std::size_t v = 0; v < graph.corners.size(); ++v) all.corners[v] |= graph.corners[v];
+  return all;
 }
 
 std::vector<int> curve_components(const TriangleSurface& surface, const std::vector<char>& feature_edges) {

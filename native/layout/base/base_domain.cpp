@@ -122,7 +122,7 @@ BaseDomain::BaseDomain(const TriangleSurface& surface, const FeatureGraph& featu
     const EditMesh mesh(surface);
     FeatureGraph graph = with_boundary(surface, features, FeatureOptions().corner_angle);
     curves_ = MeshFeatures(surface, graph, mesh);
-    graph.edges = features.edges;
+    for (std::size_t h = 0; h < graph.edges.size(); ++h) graph.edges[h] = features.edges[h] && surface.opposite[h] >= 0;
     features_ = MeshFeatures(surface, graph, mesh);
   }
   if (options.mirror) on_mirror_ = points_on_mirror(surface, *options.mirror);

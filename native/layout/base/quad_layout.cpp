@@ -38,7 +38,7 @@ class QuadCoarsening : private QuadPairs {
   QuadLayout run(const Progress& progress) {
     list_live();
     pair_within_features();
-    collapse_splits_on_mirror();
+    collapse_splits();
     double area = 0;
     for (const int v : vertices_) area += quadrics_[v].area * finer(v) * finer(v);
     side_ = std::sqrt(area / std::max(1.0, options_.size));
@@ -143,12 +143,12 @@ class QuadCoarsening : private QuadPairs {
     throw NoMap("the triangles between sharp edges cannot be paired");
   }
 
-  // A node between the two ends of a mirror's edge would have a quad alone. Its triangle goes instead, with that edge.
-  void collapse_splits_on_mirror() {
+  // A triangle alone gets a node between the two ends of its boundary edge, which is a quad's alone, with a straight angle: the triangle goes
+  // instead, with that edge.
+  void collapse_splits() {
     for (const int f : std::vector<int>(faces_)) {
       if (!mesh_.alive[f] || is_pair(f)) continue;
       const int h = split_[f];
-      if (!is_on_mirror(mesh_.from(h)) || !is_on_mirror(mesh_.to(h)) || !is_inside_mirror(mesh_.from(h))) continue;
       if (can_collapse_on_feature(h)) collapse(h);
     }
     drop_dead();

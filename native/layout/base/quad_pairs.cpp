@@ -13,9 +13,10 @@ namespace {
 
 constexpr int kOnBoundary = 2;  // quads that a node there is to have
 
-double energy_of(int quads, int regular) {
-  // One quad alone would have a straight angle for a corner.
-  constexpr double straight = 10;
+// What it costs that a vertex on a curve gets one quad alone, which has a straight angle there. A bare boundary may turn by itself.
+constexpr double kStraight = 10, kStraightOnBareBoundary = 3;
+
+double energy_of(int quads, int regular, double straight) {
   return QuadPairs::valence_energy(quads - regular) + (quads < regular && quads == 1 ? straight : 0);
 }
 
@@ -70,10 +71,10 @@ int QuadPairs::excess(int v) const {
 
 double QuadPairs::sector_energy(int h, int change) const {
   const int v = mesh_.from(h);
-  if (is_inside_mirror(v) && !features_.is_on_curve(v)) return energy_of(excess(v) + kOnBoundary + change, kOnBoundary);
+  if (is_on_bare_boundary(v)) return boundary_energy(v, excess(v) + kOnBoundary + change);
   if (!features_.is_on_curve(v)) return valence_energy(excess(v) + change);
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
-  return energy_of(quads_in(sector) + change, regular_quads(sector));
+  return energy_of(quads_in(sector) + change, regular_quads(sector), kStraight);
 }
 
 int QuadPairs::quads_in(const MeshFeatures::Sector& sector) const {
@@ -84,8 +85,16 @@ int QuadPairs::quads_in(const MeshFeatures::Sector& sector) const {
 
 int QuadPairs::regular_quads(const MeshFeatures::Sector& sector) const { return features_.regular_quads(mesh_, points_, sector); }
 
+bool QuadPairs::is_on_bare_boundary(int v) const {
+  return !features_.is_on_curve(v) && (is_inside_mirror(v) || (boundary_quads_.empty() && mesh_.is_boundary(v)));
+}
+
+double QuadPairs::boundary_energy(int v, int quads) const {
+  return energy_of(quads, kOnBoundary, is_inside_mirror(v) ? kStraight : kStraightOnBareBoundary);
+}
+
 bool QuadPairs::lacks_quads(int h, int fewer) const {
-  if (is_inside_mirror(mesh_.from(h)) && !features_.is_on_curve(mesh_.from(h))) return excess(mesh_.from(h)) < fewer;
+  if (const int v = mesh_.from(h); is_on_bare_boundary(v)) return excess(v) < fewer;
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
   return quads_in(sector) - fewer < regular_quads(sector);
 }
@@ -100,14 +109,14 @@ double QuadPairs::cost_across(int h) const {
 }
 
 double QuadPairs::diagonal_energy(int h) const {
-  if (is_inside_mirror(mesh_.from(h)) && !features_.is_on_curve(mesh_.from(h))) {
-    const int all = mesh_.valence(mesh_.from(h)) - 1;  // triangles
-    return std::max(0.0, energy_of(all - 1, kOnBoundary) - energy_of(all, kOnBoundary));
+  if (const int v = mesh_.from(h); is_on_bare_boundary(v)) {
+    const int all = mesh_.valence(v) - 1;  // triangles
+    return std::max(0.0, boundary_energy(v, all - 1) - boundary_energy(v, all));
   }
   if (!features_.is_on_curve(mesh_.from(h))) return 0;
   const MeshFeatures::Sector sector = features_.sector(mesh_, h);
   const int triangles = MeshFeatures::sector_triangles(mesh_, sector), regular = regular_quads(sector);
-  return std::max(0.0, energy_of(triangles - 1, regular) - energy_of(triangles, regular));
+  return std::max(0.0, energy_of(triangles - 1, regular, kStraight) - energy_of(triangles, regular, kStraight));
 }
 
 QuadLayout QuadPairs::layout_of(const std::vector<int>& faces, const std::vector<int>& vertices) const {

@@ -38,6 +38,8 @@ class QuadPairs {
   bool is_on_mirror(int v) const { return !on_mirror_.empty() && on_mirror_[v]; }
   // On the mirror, and no end of it: with its mirror image a quad alone there would have two sides in common.
   bool is_inside_mirror(int v) const { return is_on_mirror(v) && !features_.is_corner(v); }
+  // On the boundary, where it is none of the feature curves, and the number of quads that are to meet there is not given.
+  bool is_on_bare_boundary(int v) const;
   bool can_collapse_on_feature(int h) const { return features_.can_collapse(mesh_, h) && mesh_.can_collapse(h); }
   // What a pair of triangles across a feature's edge costs, more than any badness of a quad: least where that edge can be taken away with them.
   double cost_across(int h) const;
@@ -71,6 +73,7 @@ class QuadPairs {
  private:
   int quads_in(const MeshFeatures::Sector& sector) const;
   int regular_quads(const MeshFeatures::Sector& sector) const;
+  double boundary_energy(int v, int quads) const;  // of a vertex on a bare boundary with so many quads
 
   const std::vector<int>& boundary_quads_;
   const std::vector<char>& on_mirror_;

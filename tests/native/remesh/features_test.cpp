@@ -225,6 +225,18 @@ TEST(Features, TheBoundaryIsOneOfTheCurves) {
   }
 }
 
+TEST(Features, APlateKeepsItsCorners) {
+  for (const PolygonSoup& plate : {shapes::grid(1, 1), shapes::grid(16, 9)}) {
+    const RemeshResult made = run(plate, bounded(600));
+    testing::expect_sound(made);
+    EXPECT_EQ(made.report["verdict"]["result"], "good") << made.report["verdict"];
+    EXPECT_LT(made.report["final"]["hausdorff"].get<double>(), 1e-12);
+    EXPECT_EQ(made.report["features"]["corners"], 4);
+    EXPECT_EQ(boundary_corners(made.final_mesh), 4);
+    EXPECT_TRUE(marked_edges(made.final_mesh).empty());  // its boundary is one already
+  }
+}
+
 TEST(Features, OpenSolidsHaveBoundaryAndSharpEdges) {
   PolygonSoup open = shapes::l_prism();
   open.indices.resize(open.indices.size() - 4);  // without one wall

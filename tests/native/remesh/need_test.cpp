@@ -82,19 +82,33 @@ PolygonSoup spiky_ball() {
 
 TEST(Need, APoorMeshIsMadeOnceMoreAndIsBetter) {
   RemeshOptions options;
-  options.vertices = 1200;
+  options.vertices = 500;  // too few for a finer base
   Context context;
   const RemeshResult r = remesh(spiky_ball(), options, context);
   EXPECT_TRUE(r.report["base"]["by_need"].get<bool>());
   EXPECT_EQ(r.report["verdict"]["result"], "good") << r.report["verdict"];
-  EXPECT_LE(r.final_mesh.points.size(), 1200U);
-  EXPECT_GE(r.final_mesh.points.size(), 1176U);
+  EXPECT_LE(r.final_mesh.points.size(), 500U);
+  EXPECT_GE(r.final_mesh.points.size(), 490U);
   // Of a base that is given nothing is made once more.
   options.base = BaseSize::Given;
   options.base_quads = r.report["base"]["quads"];
   const RemeshResult once = remesh(spiky_ball(), options, context);
   EXPECT_FALSE(once.report["base"]["by_need"].get<bool>());
   EXPECT_GT(once.report["final"]["hausdorff"].get<double>(), 1.2 * r.report["final"]["hausdorff"].get<double>());
+}
+
+TEST(Effort, APoorMeshGetsAFinerBase) {
+  RemeshOptions options;
+  options.vertices = 1200;
+  Context context;
+  const RemeshResult tried = remesh(spiky_ball(), options, context);
+  options.effort = Effort::Quick;
+  const RemeshResult first = remesh(spiky_ball(), options, context);
+  EXPECT_EQ(first.report["verdict"]["result"], "poor");
+  EXPECT_EQ(tried.report["verdict"]["result"], "good") << tried.report["verdict"];
+  EXPECT_FALSE(tried.report["base"]["by_need"].get<bool>());
+  EXPECT_GT(tried.report["base"]["quads"], 3 * first.report["base"]["quads"].get<int>());
+  EXPECT_LE(tried.final_mesh.points.size(), 1200U);
 }
 
 TEST(Effort, WithNoneThePoorMeshIsTheResult) {

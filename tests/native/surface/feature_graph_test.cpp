@@ -102,8 +102,33 @@ TEST(FeatureGraph, EndsAtABoundary) {
   open.offsets.pop_back();
   const TriangleSurface surface = unit(open);
   const FeatureGraph graph = automatic(surface);
-  EXPECT_EQ(count(graph.edges), 2 * 8);
+  EXPECT_EQ(count(graph.edges), 2 * 8 + 4);  // and around the hole, where edges have one half-edge
   EXPECT_EQ(count(graph.corners), 8);
+}
+
+TEST(FeatureGraph, HasTheBoundaryOfAPlate) {
+  const auto corners_of = [](const PolygonSoup& soup) { return count(automatic(unit(soup)).corners); };
+  EXPECT_EQ(corners_of(shapes::grid(1, 1)), 4);
+  EXPECT_EQ(corners_of(shapes::grid(12, 8)), 4);
+  const TriangleSurface plate = unit(shapes::grid(12, 8));
+  const FeatureGraph graph = automatic(plate);
+  for (std::size_t h = 0; h < graph.edges.size(); ++h) EXPECT_EQ(graph.edges[h] != 0, plate.opposite[h] < 0);
+  FeatureOptions inner_only;
+  inner_only.polygons = false;
+  EXPECT_TRUE(find_features(plate, inner_only).empty());
+}
+
+TEST(FeatureGraph, IsEmptyWhereTheBoundaryIsRoundOrRough) {
+  // A ball's lower half: round where it ends.
+  EXPECT_TRUE(automatic(unit(testing::ball(16, 0))).empty());
+  // A plate whose rim goes in and out at every vertex.
+  PolygonSoup rough = shapes::grid(20, 20);
+  for (std::size_t i = 0; i < rough.points.size(); ++i) {
+    Vec3& p = rough.points[i];
+    const bool on_rim = p.x() <= 0 || p.x() >= 20 || p.y() <= 0 || p.y() >= 20;
+    if (on_rim && i % 2 == 0) p += 0.4 * (Vec3(10, 10, 0) - Vec3(p.x(), p.y(), 0)).normalized();
+  }
+  EXPECT_TRUE(automatic(unit(rough)).empty());
 }
 
 TEST(FeatureGraph, ScansHaveNone) {
