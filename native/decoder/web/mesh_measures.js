@@ -50,9 +50,12 @@ function triangles(points, offsets, indices) {
   return rows;
 }
 
-// A quad's scaled Jacobian: the least over its corners of the volume that its two edges and the quad's unit normal span, of edges of length 1. Of a
-// face of other than four corners: by the same rule, and with the normal of all of it.
+const NO_FIGURE = -9;
+
+// A quad's scaled Jacobian: the least over its corners of the volume that its two edges and the quad's unit normal span, of edges of length 1. Other
+// faces have none: where a corner lies on a straight side it would be 0.
 function scaledJacobian(p, indices, start, count, normal) {
+  if (count !== 4) return NO_FIGURE;
   const length = Math.hypot(normal[0], normal[1], normal[2]);
   let least = 1;
   for (let k = 0; k < count; ++k) {

@@ -2,7 +2,7 @@
 // A view of the unit sphere, turned, shifted and zoomed by mouse, touch, wheel and keys. Matrices are columns first.
 "use strict";
 
-const FIELD_OF_VIEW = 0.5; // radians, of the shorter side of the canvas
+const FIELD_OF_VIEW = 0.5; // radians, of the shorter side of what is free of the canvas
 
 function product(a, b) {
   const c = new Float32Array(16);
@@ -16,7 +16,7 @@ class OrbitCamera {
   constructor(canvas, changed) {
     this.canvas = canvas;
     this.changed = changed;
-    this.up = "y";
+    this.up = "z"; // as in Blender
     this.pointers = new Map();
     this.reset();
     canvas.addEventListener("pointerdown", (event) => this.press(event));
@@ -75,7 +75,7 @@ class OrbitCamera {
   }
 
   pan(dx, dy) {
-    const pixel = (2 * Math.tan(FIELD_OF_VIEW / 2) * this.distance()) / Math.min(this.canvas.clientWidth, this.canvas.clientHeight);
+    const pixel = (2 * Math.tan(FIELD_OF_VIEW / 2) * this.distance()) / this.shorter;
     this.shift = [this.shift[0] + dx * pixel, this.shift[1] - dy * pixel];
     this.changed();
   }
@@ -87,7 +87,7 @@ class OrbitCamera {
 
   // From the eye to the sphere's centre.
   distance() {
-    return 1.12 / Math.sin(FIELD_OF_VIEW / 2) / this.zoom;
+    return 1 / Math.sin(FIELD_OF_VIEW / 2) / this.zoom;
   }
 
   view() {
@@ -101,14 +101,15 @@ class OrbitCamera {
     ]);
   }
 
-  // `offset`: by how much of the canvas' width and height the middle of the picture is beside the canvas' own.
-  projection(offset) {
+  // `free`: the part of the canvas, in its pixels, in which the sphere is to be seen.
+  projection(free) {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    const free = [width * (1 - 2 * Math.abs(offset[0])), height * (1 - 2 * Math.abs(offset[1]))];
-    const scale = Math.min(...free) / Math.tan(FIELD_OF_VIEW / 2);
+    this.shorter = Math.min(free.right - free.left, free.bottom - free.top);
+    const scale = this.shorter / Math.tan(FIELD_OF_VIEW / 2);
+    const offset = [(free.left + free.right) / width - 1, 1 - (free.top + free.bottom) / height];
     const far = this.distance() + 2.2, near = Math.max(this.distance() - 2.2, far / 2000);
     return new Float32Array([
-      scale / width, 0, 0, 0, 0, scale / height, 0, 0, -2 * offset[0], -2 * offset[1], -(far + near) / (far - near), -1,
+      scale / width, 0, 0, 0, 0, scale / height, 0, 0, -offset[0], -offset[1], -(far + near) / (far - near), -1,
       0, 0, (-2 * far * near) / (far - near), 0,
     ]);
   }

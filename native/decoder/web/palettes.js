@@ -4,7 +4,7 @@
 
 const PALETTES = {
   shape: {
-    words: "Scaled Jacobian: 1 for a square, 0 and less for an inverted quad",
+    words: "Scaled Jacobian: 1 for a square, 0 and less for an inverted quad; grey is no quad",
     ticks: [[0, "0"], [0.25, "¼"], [0.5, "½"], [0.75, "¾"], [1, "1"]],
     stops: [[0, 0.55, 0.02, 0.03], [0.35, 0.93, 0.3, 0.05], [0.65, 0.95, 0.72, 0.25], [0.85, 0.42, 0.68, 0.5], [1, 0.1, 0.44, 0.55]],
   },

@@ -50,6 +50,7 @@ uniform vec4 stops[5];    // (red, green, blue, value)
 uniform float lineWidth;  // in pixels; 0: no lines
 out vec4 color;
 vec3 palette(float value) {
+  if (value < -8.0) return vec3(0.22);  // no figure
   vec3 shown = stops[0].rgb;
   for (int i = 1; i < 5; ++i) shown = mix(shown, stops[i].rgb, clamp((value - stops[i - 1].w) / (stops[i].w - stops[i - 1].w), 0.0, 1.0));
   return shown;
@@ -125,7 +126,7 @@ class SurfaceRenderer {
   constructor(canvas, camera) {
     this.canvas = canvas;
     this.camera = camera;
-    this.look = { lines: true, smoothly: true, palette: null, offset: [0, 0] };
+    this.look = { lines: true, smoothly: true, palette: null, free: null };
     this.mesh = null;
     this.gl = canvas.getContext("webgl2", { antialias: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2");
@@ -197,7 +198,7 @@ class SurfaceRenderer {
       gl.bindTexture(gl.TEXTURE_2D, this.tables[settled ? name.replace("Before", "") : name].texture);
     });
     gl.uniformMatrix4fv(places.view, false, this.camera.view());
-    gl.uniformMatrix4fv(places.projection, false, this.camera.projection(look.offset));
+    gl.uniformMatrix4fv(places.projection, false, this.camera.projection(look.free ?? { left: 0, right: canvas.clientWidth, top: 0, bottom: canvas.clientHeight }));
     gl.uniform1f(places.blend, settled ? 1 : passed * (2 - passed));
     gl.uniform1i(places.smoothly, look.smoothly ? 1 : 0);
     gl.uniform1f(places.lineWidth, look.lines ? 1.15 * density : 0);

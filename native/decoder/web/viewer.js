@@ -137,6 +137,7 @@ class Viewer {
         if (stream !== this.stream) continue;
         this.say(`${stream.name}: ${error.message}`);
         if (error instanceof Broken) await this.recover();
+        this.wanted = { bytes: this.shown.bytes, level: this.shown.level }; // which has been decoded once
       }
     }
   }
@@ -153,13 +154,12 @@ class Viewer {
     this.tell();
   }
 
-  // The picture's middle: that of what panel and timeline leave free.
+  // The surface is shown in what panel and timeline leave free.
   frame() {
     const { width, height } = element("canvas").getBoundingClientRect();
     const panel = element("panel").getBoundingClientRect(), timeline = element("timeline").getBoundingClientRect();
     const beside = panel.left > width / 2;
-    const right = beside ? width - panel.left : 0, below = height - (beside ? timeline.top : panel.top), above = 56;
-    this.renderer.setLook({ offset: [-right / 2 / width, (below - above) / 2 / height] });
+    this.renderer.setLook({ free: { left: 0, right: beside ? panel.left : width, top: 56, bottom: beside ? timeline.top : panel.top } });
   }
 
   // The figures and the sliders.
@@ -171,7 +171,8 @@ class Viewer {
     put("faces-name", mesh.quads === mesh.faces ? "Quads" : "Quads · other faces");
     put("faces", mesh.quads === mesh.faces ? number(mesh.faces) : `${number(mesh.quads)} · ${number(mesh.faces - mesh.quads)}`);
     put("off", mesh.off === null ? "…" : mesh.off === 0 ? "0" : `${(100 * mesh.off).toPrecision(2)} %`);
-    put("rate", ((8 * mesh.bytes) / mesh.vertices).toFixed(2));
+    const finest = stream.levels[mesh.depth];
+    put("rate", finest ? ((8 * mesh.bytes) / finest.vertices).toFixed(2) : "…");
     put("time", `${mesh.milliseconds.toFixed(mesh.milliseconds < 10 ? 1 : 0)} ms`);
     put("bytes-shown", `${bytesText(wanted.bytes)} of ${bytesText(stream.size)}`);
     put("level-shown", `${wanted.level} of ${mesh.depth}`);
