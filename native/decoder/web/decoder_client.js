@@ -8,10 +8,11 @@ class Refused extends Error {} // the stream is not one; the decoder goes on
 class Broken extends Error {} // the decoder is gone, with all of its streams
 
 class DecoderClient {
-  // `program`: text of the worker; `module`: WebAssembly.Module.
-  constructor(program, module) {
+  // `program`: text of the worker; `module`: WebAssembly.Module. `restarted` is called when there is a fresh worker that has no streams.
+  constructor(program, module, restarted) {
     this.address = URL.createObjectURL(new Blob([program], { type: "text/javascript" }));
     this.module = module;
+    this.restarted = restarted;
     this.tickets = 0;
     this.start();
   }
@@ -50,6 +51,7 @@ class DecoderClient {
     this.worker.terminate();
     const waiting = this.waiting;
     this.start();
+    this.restarted();
     for (const { reject, clock } of waiting.values()) {
       clearTimeout(clock);
       reject(new Broken(words));

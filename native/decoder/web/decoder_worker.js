@@ -9,6 +9,12 @@ const MOST_QUADS = 1 << 22;
 let functions = null;
 const streams = new Map(); // by the page's number: {decoder, sphere, whole: of each level, the points that all bytes give}
 
+function known(stream) {
+  const found = streams.get(stream);
+  if (!found) throw new StreamError(STREAM_STATUS.INVALID, "the stream is closed");
+  return found;
+}
+
 // Quads that are told of, and the connectivity of one level, which is the same for all prefixes.
 function census(mesh) {
   const vertices = mesh.points.length / 3, faces = mesh.offsets.length - 1;
@@ -27,9 +33,9 @@ const answers = {
     streams.set(stream, { decoder, sphere: null, whole: new Map() });
   },
   append({ stream, bytes }) {
-    const known = streams.get(stream);
-    known.decoder.append(bytes);
-    known.whole.clear();
+    const { decoder, whole } = known(stream);
+    decoder.append(bytes);
+    whole.clear();
   },
   close({ stream }) {
     streams.get(stream)?.decoder.close();
@@ -37,13 +43,13 @@ const answers = {
   },
   // The mesh as it is drawn.
   decode({ stream, bytes, level }) {
-    const known = streams.get(stream);
+    const decoded = known(stream);
     const start = performance.now();
-    const mesh = known.decoder.decode(bytes, level);
+    const mesh = decoded.decoder.decode(bytes, level);
     const milliseconds = performance.now() - start;
-    known.sphere ??= boundingSphere(mesh.points);
-    const points = placedPoints(mesh.points, known.sphere);
-    const whole = known.whole.get(mesh.level);
+    decoded.sphere ??= boundingSphere(mesh.points);
+    const points = placedPoints(mesh.points, decoded.sphere);
+    const whole = decoded.whole.get(mesh.level);
     const off = whole ? rootMeanSquare(mesh.points, whole.points) / whole.diagonal : null;
     return {
       ...census(mesh), depth: mesh.depth, bytes, milliseconds, off,
@@ -52,7 +58,7 @@ const answers = {
   },
   // The fewest bytes that give a mesh, if all do.
   first_bytes({ stream }) {
-    const { decoder } = streams.get(stream);
+    const { decoder } = known(stream);
     let few = 0, enough = decoder.size;
     while (enough - few > 1) {
       const middle = (few + enough) >> 1;
@@ -68,13 +74,13 @@ const answers = {
   },
   // What there is to say of a level, and from then on how far other prefixes are off.
   survey({ stream, level }) {
-    const known = streams.get(stream);
-    const mesh = known.decoder.decode(0, level);
-    known.whole.set(mesh.level, { points: mesh.points.slice(), diagonal: boundingSphere(mesh.points).diagonal || 1 });
+    const { decoder, whole } = known(stream);
+    const mesh = decoder.decode(0, level);
+    whole.set(mesh.level, { points: mesh.points.slice(), diagonal: boundingSphere(mesh.points).diagonal || 1 });
     return { ...census(mesh), ...topology(mesh.points.length / 3, mesh.offsets, mesh.indices) };
   },
   object({ stream, bytes, level }) {
-    const mesh = streams.get(stream).decoder.decode(bytes, level);
+    const mesh = known(stream).decoder.decode(bytes, level);
     return wavefrontObject(mesh.points, mesh.offsets, mesh.indices);
   },
 };

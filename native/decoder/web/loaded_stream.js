@@ -17,7 +17,8 @@ class LoadedStream {
     this.levels = []; // what is known of each, see `survey` of the worker
   }
 
-  ask(kind, data) {
+  async ask(kind, data) {
+    await this.restoring;
     return this.client.ask(kind, { stream: this.number, ...data });
   }
 
@@ -27,10 +28,11 @@ class LoadedStream {
     this.size += piece.length;
   }
 
-  // In a fresh decoder.
-  async restore() {
-    await this.ask("open");
-    for (const piece of this.pieces) await this.ask("append", { bytes: piece });
+  // In a fresh decoder. If even that fails, whatever is asked next says so.
+  restore() {
+    const stream = this.number;
+    const all = [this.client.ask("open", { stream }), ...this.pieces.map((bytes) => this.client.ask("append", { stream, bytes }))];
+    this.restoring = Promise.allSettled(all);
   }
 
   close() {
@@ -59,9 +61,7 @@ class LoadedStream {
     }
     const foreign = foreignWords(head);
     if (foreign) throw new Refused(foreign);
-    const mesh = await this.ask("decode", { bytes: this.size, level: -1 });
-    this.firstBytes = await this.ask("first_bytes");
-    show(mesh);
+    show(await this.ask("decode", { bytes: this.size, level: -1 }));
   }
 
   // From the size of the base to all, evenly on a logarithmic scale: most of a surface is in its first bytes.

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page: what is wanted (bytes, level), what is shown, and the controls of both.
+// The page: which stream is there, what is wanted of it (bytes, level), what is shown, and the controls of all that.
 "use strict";
 
-const PLAY_SECONDS = 9;
-const element = (id) => document.getElementById(id);
-const number = new Intl.NumberFormat("en").format;
-
-function bytesText(bytes) {
-  if (bytes < 1000) return `${bytes} B`;
-  return bytes < 1e6 ? `${(bytes / 1000).toFixed(1)} kB` : `${(bytes / 1e6).toFixed(2)} MB`;
-}
+const PLAY_SECONDS = 9; // from the fewest bytes to all
 
 class Viewer {
   constructor() {
@@ -19,12 +12,13 @@ class Viewer {
     this.loads = 0;
     this.decoding = null;
     this.sources = [];
+    this.readOut = new ReadOut();
     this.camera = new OrbitCamera(element("canvas"), () => this.renderer?.redraw());
     try {
       this.renderer = new SurfaceRenderer(element("canvas"), this.camera);
       const code = Uint8Array.from(atob(element("decoder").textContent.trim()), (letter) => letter.charCodeAt(0));
       if (!WebAssembly.validate(code)) throw new Error("this browser is too old: it has no exceptions in WebAssembly");
-      this.client = new DecoderClient(element("worker").textContent, new WebAssembly.Module(code));
+      this.client = new DecoderClient(element("worker").textContent, new WebAssembly.Module(code), () => this.stream?.restore());
     } catch (error) {
       this.say(`Nothing can be shown: ${error.message}`);
       return;
@@ -34,8 +28,7 @@ class Viewer {
   }
 
   say(line) {
-    element("message").hidden = !line;
-    element("message").firstElementChild.textContent = line;
+    this.readOut.say(line);
   }
 
   // Streams in the page, and those that its address names: viewer.html?stream=a.hmesh&stream=b.hmesh.
@@ -62,56 +55,63 @@ class Viewer {
     this.say("");
     try {
       const opened = await source();
-      await stream.load(opened, (mesh) => load === this.loads && this.replace(stream, mesh, opened.size));
+      await stream.load(opened, (mesh) => (load === this.loads || this.stream === stream) && this.replace(stream, mesh));
     } catch (error) {
-      const words = error instanceof Refused ? error.message.replace("not a valid hierarchy stream: ", "not a stream that can be shown: ") : error.message;
+      const words = error.message.replace("not a valid hierarchy stream: ", "not a stream that can be shown: ");
       if (load === this.loads) this.say(error instanceof Refused || error instanceof Broken ? `${name}: ${words}` : words);
-      if (stream !== this.stream) stream.close();
-      if (error instanceof Broken) await this.recover();
     }
-    if (load !== this.loads) return;
-    if (this.stream === stream) this.survey(stream);
-    else element("streams").value = this.stream?.name ?? "";
-  }
-
-  async recover() {
-    if (this.stream) await this.stream.restore();
+    if (this.stream === stream) {
+      await this.settle(stream);
+    } else {
+      stream.close();
+      if (load === this.loads) element("streams").value = this.stream?.name ?? "";
+    }
   }
 
   // Shows a mesh of a stream that comes in. Returns true: more of it is welcome.
-  replace(stream, mesh, total) {
+  replace(stream, mesh) {
     if (this.stream !== stream) {
       this.stream?.close();
       this.stream = stream;
       this.shown = null;
       this.camera.reset();
-      for (const id of ["panel", "timeline"]) element(id).hidden = false;
-      element("welcome").hidden = true;
-      element("name").hidden = this.sources.some(({ name }) => name === stream.name) && this.sources.length > 1;
-      element("name").textContent = stream.name;
-      document.title = `${stream.name} · Hybrid Mesh`;
+      this.readOut.introduce(stream, this.sources.length > 1 && this.sources.some(({ name }) => name === stream.name));
+      this.enable(false);
     }
-    const whole = !total || total === stream.size;
-    for (const id of ["bytes", "play", "save"]) element(id).disabled = !whole;
     this.wanted = { bytes: stream.size, level: mesh.depth };
     this.show(mesh);
     return true;
   }
 
-  // The figures of all levels, one after the other, between which what is wanted is decoded.
-  async survey(stream) {
+  // Once there is no more to come of it.
+  async settle(stream) {
     try {
-      for (let level = this.shown.depth; level >= 0; --level) {
-        await this.decoding;
-        if (this.stream !== stream) return;
-        stream.levels[level] = await stream.ask("survey", { level });
-        this.listLevels();
-      }
-      this.refresh();
+      stream.firstBytes = await stream.ask("first_bytes");
+      if (this.stream !== stream) return;
+      this.enable(true);
+      this.tell();
+      await this.survey(stream);
     } catch (error) {
       if (this.stream === stream) this.say(`${stream.name}: ${error.message}`);
-      if (error instanceof Broken) await this.recover();
     }
+  }
+
+  // While a stream comes in, what is shown is what has come.
+  enable(whole) {
+    for (const id of ["bytes", "level", "play", "save"]) element(id).disabled = !whole;
+  }
+
+  // The figures of all levels, one after the other, between which what is wanted is decoded.
+  async survey(stream) {
+    for (let level = this.shown.depth; level >= 0; --level) {
+      await this.decoding;
+      if (this.stream !== stream) return;
+      const known = await stream.ask("survey", { level });
+      if (this.stream !== stream) return;
+      stream.levels[level] = known;
+      this.tell();
+    }
+    this.refresh();
   }
 
   want(changes) {
@@ -136,7 +136,6 @@ class Viewer {
       } catch (error) {
         if (stream !== this.stream) continue;
         this.say(`${stream.name}: ${error.message}`);
-        if (error instanceof Broken) await this.recover();
         this.wanted = { bytes: this.shown.bytes, level: this.shown.level }; // which has been decoded once
       }
     }
@@ -145,7 +144,7 @@ class Viewer {
   show(mesh) {
     const continues = this.shown?.level === mesh.level && this.shown.points.length === mesh.points.length && this.shown.triangles.length === mesh.triangles.length;
     this.shown = mesh;
-    this.frame();
+    this.renderer.setLook({ free: this.readOut.freePart() });
     try {
       this.renderer.show(mesh, continues);
     } catch (error) {
@@ -154,65 +153,13 @@ class Viewer {
     this.tell();
   }
 
-  // The surface is shown in what panel and timeline leave free.
-  frame() {
-    const { width, height } = element("canvas").getBoundingClientRect();
-    const panel = element("panel").getBoundingClientRect(), timeline = element("timeline").getBoundingClientRect();
-    const beside = panel.left > width / 2;
-    this.renderer.setLook({ free: { left: 0, right: beside ? panel.left : width, top: 56, bottom: beside ? timeline.top : panel.top } });
-  }
-
-  // The figures and the sliders.
   tell() {
-    const { shown: mesh, stream, wanted } = this;
-    if (!mesh) return;
-    const put = (id, text) => (element(id).textContent = text);
-    put("vertices", number(mesh.vertices));
-    put("faces-name", mesh.quads === mesh.faces ? "Quads" : "Quads · other faces");
-    put("faces", mesh.quads === mesh.faces ? number(mesh.faces) : `${number(mesh.quads)} · ${number(mesh.faces - mesh.quads)}`);
-    put("off", mesh.off === null ? "…" : mesh.off === 0 ? "0" : `${(100 * mesh.off).toPrecision(2)} %`);
-    const finest = stream.levels[mesh.depth];
-    put("rate", finest ? ((8 * mesh.bytes) / finest.vertices).toFixed(2) : "…");
-    put("time", `${mesh.milliseconds.toFixed(mesh.milliseconds < 10 ? 1 : 0)} ms`);
-    put("bytes-shown", `${bytesText(wanted.bytes)} of ${bytesText(stream.size)}`);
-    put("level-shown", `${wanted.level} of ${mesh.depth}`);
-    const place = (id, value, most) => {
-      if (document.activeElement !== element(id) || this.playing) element(id).value = value;
-      element(id).style.setProperty("--part", `${(100 * value) / (most || 1)}%`);
-    };
-    place("bytes", 1000 * stream.partAt(wanted.bytes), 1000);
-    element("level").max = mesh.depth;
-    place("level", wanted.level, mesh.depth);
-    if (element("levels").tBodies[0].dataset.of !== `${stream.number}/${mesh.depth}`) this.listLevels();
-    for (const row of element("levels").tBodies[0].rows) row.ariaSelected = String(Number(row.dataset.level) === wanted.level);
-    Object.assign(document.body.dataset, { stream: stream.name, bytes: mesh.bytes, level: mesh.level });
-  }
-
-  listLevels() {
-    const { stream, shown, wanted } = this;
-    const body = element("levels").tBodies[0];
-    body.dataset.of = `${stream.number}/${shown.depth}`;
-    body.replaceChildren();
-    for (let level = 0; level <= shown.depth; ++level) {
-      const known = stream.levels[level], coarser = stream.levels[level - 1];
-      const row = body.insertRow();
-      row.dataset.level = level;
-      row.ariaSelected = String(level === wanted.level);
-      row.onclick = () => this.want({ level });
-      row.insertCell().textContent = level;
-      for (const figure of ["faces", "components", "genus", "boundaries"]) {
-        const cell = row.insertCell();
-        cell.textContent = known ? number(known[figure]) : "…";
-        // What opens on this level.
-        if (figure !== "faces" && known && coarser && known[figure] !== coarser[figure]) cell.className = "opened";
-      }
-    }
+    if (this.shown) this.readOut.tell(this.stream, this.shown, this.wanted);
   }
 
   stop() {
     this.playing = false;
-    element("play").classList.remove("playing");
-    element("play").ariaLabel = "Play";
+    this.readOut.setPlaying(false);
   }
 
   async play() {
@@ -224,8 +171,7 @@ class Viewer {
     let part = stream.partAt(this.wanted.bytes);
     if (part > 0.999) part = 0;
     this.playing = true;
-    element("play").classList.add("playing");
-    element("play").ariaLabel = "Pause";
+    this.readOut.setPlaying(true);
     for (let before = performance.now(); this.playing && this.stream === stream && part < 1; ) {
       await this.want({ bytes: stream.bytesAt(part) });
       const now = await new Promise(requestAnimationFrame);
@@ -252,7 +198,6 @@ class Viewer {
       setTimeout(() => URL.revokeObjectURL(link.href), 10000);
     } catch (error) {
       this.say(`The mesh cannot be saved: ${error.message}`);
-      if (error instanceof Broken) await this.recover();
     }
   }
 
@@ -276,9 +221,13 @@ class Viewer {
     this.choice("up", (value) => this.camera.setUp(value));
     this.choice("palette", (value) => {
       this.renderer.setLook({ palette: value || null });
-      this.showLegend(PALETTES[value]);
+      this.readOut.showLegend(PALETTES[value]);
     });
-    addEventListener("resize", () => this.shown && this.frame());
+    element("levels").tBodies[0].onclick = ({ target }) => {
+      const row = target.closest("tr");
+      if (row && !element("level").disabled) this.want({ level: row.sectionRowIndex });
+    };
+    addEventListener("resize", () => this.shown && this.renderer.setLook({ free: this.readOut.freePart() }));
     addEventListener("dragover", (event) => {
       event.preventDefault();
       document.body.classList.add("dropping");
@@ -298,21 +247,6 @@ class Viewer {
       for (const button of element(id).children) button.ariaPressed = String(button === target);
       chosen(target.value);
     };
-  }
-
-  showLegend(palette) {
-    element("legend").hidden = !palette;
-    if (!palette) return;
-    const [ramp, ticks, words] = element("legend").children;
-    const first = palette.ticks[0][0], last = palette.ticks[palette.ticks.length - 1][0];
-    ramp.style.background = paletteGradient(palette);
-    ticks.replaceChildren();
-    for (const [value, text] of palette.ticks) {
-      const tick = ticks.appendChild(document.createElement("span"));
-      tick.textContent = text;
-      tick.style.left = `${(100 * (value - first)) / (last - first)}%`;
-    }
-    words.textContent = palette.words;
   }
 }
 
