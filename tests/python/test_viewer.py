@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import threading
+import time
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -180,6 +181,22 @@ def test_mouse_and_wheel_move_the_view(page):
     assert page.run(camera)[2] > zoom and page.drawn()["covered"] > before["covered"]
     ActionChains(page.browser).double_click(page.find("#canvas")).perform()
     assert page.run(camera) == [yaw, pitch, zoom] and page.drawn() == before
+    page.touch("touchStart", (300, 300), (400, 300))
+    page.touch("touchMove", (250, 300), (450, 300))
+    page.touch("touchEnd")
+    page.wait(f"viewer.camera.zoom > {1.5 * zoom}")
+
+
+def test_what_is_shown_is_saved(page, folder, tmp_path):
+    page.choose("adaptive.hmesh")
+    page.want((folder / "adaptive.hmesh").stat().st_size // 3, 1)
+    page.browser.execute_cdp_cmd("Page.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)})
+    page.find("#save").click()
+    for _ in range(500):
+        if saved := list(tmp_path.glob("*.obj")):
+            break
+        time.sleep(0.02)
+    assert saved[0].name.startswith("adaptive.") and saved[0].read_text() == page.object()
 
 
 def test_bad_files_are_named_in_a_line_and_the_page_goes_on(page, folder, tmp_path):
@@ -201,8 +218,7 @@ def test_bad_files_are_named_in_a_line_and_the_page_goes_on(page, folder, tmp_pa
         assert words in page.message() and "\n" not in page.message()
         assert page.run("return viewer.stream.name") == "adaptive.hmesh" and page.shown() == shown
     page.want(shown["bytes"] // 2, 1)
-    (tmp_path / "good.hmesh").write_bytes(whole[: len(whole) // 2])
-    page.pick(tmp_path / "good.hmesh")
+    page.drop("good.hmesh", whole[: len(whole) // 2])
     page.wait_for("good.hmesh")
     assert page.message() == "" and page.shown()["bytes"] == len(whole) // 2
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The viewer's page in a headless browser, as its user has it."""
 
+import base64
 import json
 import time
 
@@ -71,16 +72,31 @@ class ViewerPage:
         self.browser.execute_async_script("viewer.want({bytes: arguments[0], level: arguments[1]}).then(arguments[2])", most_bytes, level)
         assert self.shown() == {"bytes": most_bytes, "level": level}
 
+    def drop(self, name, content):
+        """A file, on the page."""
+        script = """
+            const dropped = new DataTransfer();
+            dropped.items.add(new File([Uint8Array.from(atob(arguments[1]), (letter) => letter.charCodeAt(0))], arguments[0]));
+            document.body.dispatchEvent(new DragEvent("drop", {dataTransfer: dropped, bubbles: true, cancelable: true}));
+            """
+        self.run(script, name, base64.b64encode(content).decode())
+
+    def touch(self, kind, *places):
+        points = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(places)]
+        self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def object(self):
+        return self.browser.execute_async_script("viewer.object().then(arguments[0])")
+
     def mesh(self):
         """What is shown, as it would be saved: every number is written so that it is read as the same bits."""
-        text = self.browser.execute_async_script("viewer.object().then(arguments[0])")
-        rows = [line.split() for line in text.splitlines()]
+        rows = [line.split() for line in self.object().splitlines()]
         points = np.array([[float(x) for x in row[1:]] for row in rows if row[0] == "v"])
         faces = [[int(i) - 1 for i in row[1:]] for row in rows if row[0] == "f"]
         return points, faces
 
     def drawn(self):
-        """The colour in the middle of the free part of the picture, and how much of the picture the surface takes."""
+        """How much of the picture the surface takes, and its mean colour."""
         return self.run(
             """
             const {gl, canvas, look} = viewer.renderer;

@@ -69,7 +69,7 @@ class ReadOut {
       rows.replaceChildren();
       for (let level = 0; level <= depth; ++level) this.addLevel(rows.insertRow(), level, stream.levels[level], stream.levels[level - 1]);
     }
-    [...rows.rows].forEach((row, level) => (row.ariaSelected = String(level === chosen)));
+    [...rows.rows].forEach((row, level) => row.setAttribute("aria-selected", level === chosen));
   }
 
   addLevel(row, level, known, coarser) {
@@ -84,7 +84,7 @@ class ReadOut {
 
   setPlaying(playing) {
     element("play").classList.toggle("playing", playing);
-    element("play").ariaLabel = playing ? "Pause" : "Play";
+    element("play").setAttribute("aria-label", playing ? "Pause" : "Play");
   }
 
   showLegend(palette) {

@@ -244,7 +244,7 @@ class Viewer {
   choice(id, chosen) {
     element(id).onclick = ({ target }) => {
       if (target.tagName !== "BUTTON") return;
-      for (const button of element(id).children) button.ariaPressed = String(button === target);
+      for (const button of element(id).children) button.setAttribute("aria-pressed", button === target);
       chosen(target.value);
     };
   }
