@@ -104,7 +104,9 @@ function shaderProgram(gl) {
 // Rows of numbers as a texture, TABLE_WIDTH of them side by side.
 class Table {
   constructor(gl, inner, outer, kind, width) {
-    Object.assign(this, { gl, inner, outer, kind, width, lines: 0, texture: gl.createTexture() });
+    // Asked for once: the answer may wait for all that is being drawn.
+    const mostLines = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+    Object.assign(this, { gl, inner, outer, kind, width, mostLines, lines: 0, texture: gl.createTexture() });
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
   }
@@ -114,7 +116,7 @@ class Table {
     const count = rows.length / this.width, whole = Math.floor(count / TABLE_WIDTH), rest = count % TABLE_WIDTH;
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     const lines = Math.max(1, whole + (rest > 0 ? 1 : 0));
-    if (lines > gl.getParameter(gl.MAX_TEXTURE_SIZE)) throw new Error("the mesh is too large for this device's graphics");
+    if (lines > this.mostLines) throw new Error("the mesh is too large for this device's graphics");
     if (lines !== this.lines) gl.texImage2D(gl.TEXTURE_2D, 0, this.inner, TABLE_WIDTH, lines, 0, this.outer, this.kind, null);
     this.lines = lines;
     if (whole > 0) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, TABLE_WIDTH, whole, this.outer, this.kind, rows);

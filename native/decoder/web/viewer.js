@@ -175,7 +175,8 @@ class Viewer {
     for (let before = performance.now(); this.playing && this.stream === stream && part < 1; ) {
       await this.want({ bytes: stream.bytesAt(part) });
       const now = await new Promise(requestAnimationFrame);
-      part = Math.min(1, part + Math.max(0, now - before) / 1000 / PLAY_SECONDS);
+      // Where decoding is slow, it takes longer, so that no prefix is far from the last one.
+      part = Math.min(1, part + Math.min(250, Math.max(0, now - before)) / 1000 / PLAY_SECONDS);
       before = now;
     }
     if (this.playing && this.stream === stream) {
