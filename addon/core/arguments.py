@@ -25,7 +25,7 @@ def parser():
     made = _Parser(prog=PROGRAM, description="Multiresolution quad remeshing of scans.", allow_abbrev=False)
     made.add_argument("--version", action="version", version=f"{PROGRAM} {VERSION}")
     commands = made.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_remesh, _add_compare, _add_info, _add_encode, _add_decode):
+    for add in (_add_remesh, _add_task, _add_merge_reports, _add_compare, _add_info, _add_encode, _add_decode):
         add(commands)
     for name in LATER_COMMANDS:
         commands.add_parser(name, help="(comes with a later version)")
@@ -85,7 +85,28 @@ def _add_remesh(commands):
     running.add_argument("--jobs", type=_whole(1), default=1, metavar="N", help="inputs at once, each in a process of its own (default 1)")
     running.add_argument("--threads", type=_whole(0), default=0, metavar="N", help="threads for each input (default 0: all cores)")
     running.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which an input has failed")
+    _add_progress(running)
     running.add_argument("--resume", action="store_true", help="skip inputs that are done with the same settings and version")
+    running.add_argument("--farm", action="store_true", help="do nothing yet: write DIR/batch.json, of which a render farm does each input as a task and then merges the reports")
+
+
+def _add_task(commands):
+    command = commands.add_parser("task", help="one input of a batch, as a render farm runs it", allow_abbrev=False)
+    command.set_defaults(command="task")
+    _add_batch(command)
+    command.add_argument("number", type=_whole(1), metavar="N", help="which input, from 1; one that is done is left alone")
+    command.add_argument("--threads", type=_whole(0), metavar="N", help="threads on this machine, if not those that the batch was made with")
+    _add_progress(command)
+
+
+def _add_merge_reports(commands):
+    command = commands.add_parser("merge-reports", help="the summary of a batch whose tasks are done", allow_abbrev=False)
+    command.set_defaults(command="merge-reports")
+    _add_batch(command)
+
+
+def _add_batch(command):
+    command.add_argument("batch", metavar="BATCH.json", help="what remesh --farm has written; outputs go into its folder")
 
 
 def _add_compare(commands):
@@ -129,6 +150,13 @@ def _add_decode(commands):
     command.add_argument("--bytes", type=_whole(1), metavar="N", help="read no more of a stream: a coarser version of all levels")
     command.add_argument("--level", type=_whole(0), metavar="J", help="this level, 0 being the base, instead of the final mesh")
     command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+
+
+def _add_progress(command):
+    command.add_argument(
+        "--progress", choices=("auto", "lines", "openjd", "none"), default="auto",
+        help="how far inputs are: auto, in one line as long as stderr is a terminal (default); lines, one a tenth of an input; openjd, as Open Job Description reads it; none",
+    )  # fmt: skip
 
 
 def _whole(least):

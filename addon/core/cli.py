@@ -5,11 +5,13 @@ import json
 import os
 import signal
 import sys
+from dataclasses import replace
 
+from . import farm, plans
 from . import inputs as input_files
-from . import plans
 from .arguments import LATER_COMMANDS, PROGRAM, WrongArguments, parser
-from .batch import Batch, BatchOptions, OutputError
+from .batch import Batch, BatchOptions, OutputError, counts
+from .console import Console
 from .native import NativeMissing, explain
 from .process import Processes, WorkerFailed, bpy_available
 from .settings import RemeshSettings, SettingsError
@@ -39,10 +41,10 @@ def run(argv):
     try:
         arguments = parser().parse_args(_known(list(argv)))
         return COMMANDS[arguments.command](arguments)
-    except (WrongArguments, SettingsError, input_files.InputsError) as error:
+    except (WrongArguments, SettingsError, input_files.InputsError, farm.FarmError) as error:
         _fail(str(error))
         return WRONG_ARGUMENTS
-    except NativeMissing as error:
+    except (NativeMissing, OutputError, WorkerFailed) as error:
         _fail(str(error))
         return FAILED
     except KeyboardInterrupt:
@@ -97,12 +99,28 @@ def remesh(arguments):
         if outputs.blend:
             raise WrongArguments("--blend needs Blender; this is Python without Blender")
     options = BatchOptions(arguments.output, settings, outputs, arguments.jobs, arguments.timeout, arguments.resume)
-    batch = Batch(options, _show, _fail)
-    try:
-        return FAILED if batch.run(arguments.inputs) else DONE
-    except OutputError as error:
-        _fail(str(error))
-        return FAILED
+    batch = Batch(options, Console(arguments.progress))
+    if arguments.farm:
+        items = batch.inputs(arguments.inputs)
+        path = farm.write(options, items)
+        _show(f"{path}: {len(items)} input{'s' if len(items) > 1 else ''}, none of them done; {PROGRAM} task {path} N does one, {PROGRAM} merge-reports {path} is for when all are")
+        return DONE
+    return FAILED if batch.run(arguments.inputs) else DONE
+
+
+def task(arguments):
+    batch = farm.read(arguments.batch)
+    if arguments.threads is not None:
+        batch.options.settings = replace(batch.options.settings, threads=arguments.threads).validate()
+    farm.do_task(batch, arguments.number, Console(arguments.progress))
+    return DONE
+
+
+def merge_reports(arguments):
+    batch = farm.read(arguments.batch)
+    rows = farm.merge(batch, Console("none"))
+    _show(counts(rows))
+    return FAILED if any(row["status"] == "failed" for row in rows) else DONE
 
 
 def _read_plan(path):
@@ -158,7 +176,9 @@ def decode(arguments):
     return _answer(job, arguments.timeout, f"{arguments.file}: ", show)
 
 
-COMMANDS = {"remesh": remesh, "compare": compare, "info": info, "encode": encode, "decode": decode}
+COMMANDS = {
+    "remesh": remesh, "task": task, "merge-reports": merge_reports, "compare": compare, "info": info, "encode": encode, "decode": decode,
+}  # fmt: skip
 
 
 def _answer(job, timeout, label, show):
@@ -175,7 +195,7 @@ def _answer(job, timeout, label, show):
 def _known(argv):
     """The arguments, unless they ask for what this version does not have yet."""
     if argv and argv[0] in LATER_COMMANDS:
-        raise WrongArguments(f"{argv[0]} comes with a later version; there are remesh, compare, info, encode and decode")
+        raise WrongArguments(f"{argv[0]} comes with a later version; there are {', '.join(COMMANDS)}")
     return argv
 
 

@@ -26,10 +26,12 @@ class Input:
     object_name: str = ""  # of a scene's mesh object
     arrays: str = ""  # file with the object's mesh
     error: str = ""  # why it cannot be read, if that is known before it starts
+    shown: str = ""  # what people know the path as, if not as `path`
 
     @property
     def label(self):
-        return f"{self.path}: {self.object_name}" if self.object_name else self.path
+        path = self.shown or self.path
+        return f"{path}: {self.object_name}" if self.object_name else path
 
 
 @dataclass

@@ -2,6 +2,8 @@
 """The compiled module, imported when it is first needed so that this package can be imported without it."""
 
 import os
+import platform
+import sys
 
 
 class NativeMissing(RuntimeError):
@@ -10,6 +12,10 @@ class NativeMissing(RuntimeError):
 
 def native():
     """The module `_native`; raises NativeMissing saying what to do."""
+    try:
+        import numpy  # noqa: F401 - the module takes and gives its arrays
+    except ImportError as error:
+        raise NativeMissing(f"Python {platform.python_version()} ({sys.executable}) has no NumPy, which Hybrid Mesh needs ({error})") from error
     try:
         from .. import _native
     except ImportError as error:

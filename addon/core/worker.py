@@ -10,8 +10,10 @@ import time
 from . import report as reports
 from . import settings as settings_module
 from .native import explain, native
-from .process import RESULT_MARK
+from .process import PROGRESS_MARK, RESULT_MARK
 from .version import VERSION
+
+PROGRESS_SECONDS = 0.5  # between two words on how far a job is
 
 
 def main(jobs):
@@ -48,7 +50,7 @@ def remesh(job):
         else:
             mesh = module.read_mesh(job["path"])
     read = time.monotonic()
-    result = module.remesh(*mesh, settings.native(), density)
+    result = _watched(module.start_remesh(*mesh, settings.native(), density))
     worked = time.monotonic()
 
     stem = os.path.join(job["folder"], job["name"])
@@ -77,6 +79,17 @@ def remesh(job):
     report["peak_memory_bytes"] = reports.peak_memory_bytes()
     write_text(stem + ".report.json", reports.to_json(report))
     return {"report": report}
+
+
+def _watched(running):
+    """The result of a native job; the parent reads meanwhile how far it is."""
+    told = None
+    while not running.wait(PROGRESS_SECONDS):
+        now = (round(running.progress, 3), running.stage)
+        if now != told:
+            os.write(1, ("\n" + PROGRESS_MARK + json.dumps(now) + "\n").encode())
+            told = now
+    return running.result()
 
 
 def finished_report(text, job, settings):
