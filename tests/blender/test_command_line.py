@@ -57,6 +57,23 @@ def test_each_mesh_object_of_a_blend_is_an_input(files, capfd):
     assert abs(points).max() < 1  # the modifier was applied
 
 
+def test_a_farm_does_the_objects_of_a_blend_one_by_one(files, capfd):
+    options = ("--base-quads", "min", "--levels", 1, "--effort", "quick")
+    assert run("remesh", files / "scene.blend", "--output", files / "farm", *options, "--farm") == 0
+    batch = files / "farm" / "batch.json"
+    for name in ("first scan", "no faces"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    bpy.ops.wm.save_as_mainfile(filepath=str(files / "scene.blend"))
+    numbers = {name: number for number, name in enumerate(json.loads(batch.read_text(encoding="utf-8"))["names"], 1)}
+    capfd.readouterr()
+    assert run("task", batch, numbers["Größe 猫"]) == run("task", batch, numbers["first scan"]) == 0
+    assert capfd.readouterr().err.strip().endswith("scene.blend: first scan: is no longer in the file")
+    assert run("merge-reports", batch) == 1
+    assert {name: row["status"] for name, row in summary(files / "farm").items()} == {"first scan": "failed", "Größe 猫": "done", "no faces": "failed"}
+    assert run("remesh", files / "scene.blend", "--output", files / "alone", *options) == 0
+    assert (files / "farm" / "Größe 猫.hmesh").read_bytes() == (files / "alone" / "Größe 猫.hmesh").read_bytes()
+
+
 def test_one_name_twice_gets_two_names(files, capfd):
     (files / "first scan.ply").write_bytes((files / "mesh.ply").read_bytes())
     assert run("remesh", files / "scene.blend", files / "first scan.ply", "--output", files / "out", "--vertices", 1000) == 1  # an object has no faces
