@@ -113,7 +113,7 @@ def _add_compare(commands):
     command = commands.add_parser("compare", help="distances between two meshes", allow_abbrev=False)
     command.set_defaults(command="compare")
     command.add_argument("a", metavar="A", help="the reference: distances are fractions of its bounding-box diagonal")
-    command.add_argument("b", metavar="B")
+    command.add_argument("b", metavar="B", help="the other mesh, of any kind that can be read")
     command.add_argument("--samples", type=_whole(1), default=200000, metavar="N", help="a direction (default 200000)")
     command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
 
@@ -121,7 +121,7 @@ def _add_compare(commands):
 def _add_info(commands):
     command = commands.add_parser("info", help="what a .hmesh holds", allow_abbrev=False)
     command.set_defaults(command="info")
-    command.add_argument("file", metavar="FILE.hmesh")
+    command.add_argument("file", metavar="FILE.hmesh", help="a hierarchy or a stream")
     command.add_argument("--check", action="store_true", help="verify invariants, topology and every stored map")
     command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
 
@@ -129,7 +129,7 @@ def _add_info(commands):
 def _add_encode(commands):
     command = commands.add_parser("encode", help="a .hmesh as an embedded stream, a few hundred bytes and more", allow_abbrev=False)
     command.set_defaults(command="encode")
-    command.add_argument("file", metavar="IN.hmesh")
+    command.add_argument("file", metavar="IN.hmesh", help="a hierarchy, or where it is read a stream")
     command.add_argument("output", metavar="OUT.hmesh", help="connectivity and positions of all levels; maps and settings are left out")
     bounds = command.add_mutually_exclusive_group()
     bounds.add_argument("--bytes", type=_whole(1), metavar="N", help="hard upper bound on the file's size")
@@ -145,7 +145,7 @@ def _add_encode(commands):
 def _add_decode(commands):
     command = commands.add_parser("decode", help="a mesh of a .hmesh", allow_abbrev=False)
     command.set_defaults(command="decode")
-    command.add_argument("file", metavar="IN.hmesh")
+    command.add_argument("file", metavar="IN.hmesh", help="a hierarchy, or where it is read a stream")
     command.add_argument("--output", required=True, metavar="FILE", help=f"the mesh: {', '.join('.' + form for form in input_files.EXPORT_FORMATS)}")
     command.add_argument("--bytes", type=_whole(1), metavar="N", help="read no more of a stream: a coarser version of all levels")
     command.add_argument("--level", type=_whole(0), metavar="J", help="this level, 0 being the base, instead of the final mesh")
