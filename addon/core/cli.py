@@ -166,8 +166,8 @@ def encode(arguments):
 
 def decode(arguments):
     form = os.path.splitext(arguments.output)[1][1:].lower()
-    if form not in input_files.EXPORT_FORMATS:
-        raise WrongArguments(f"--output must be a file of a kind that is written ({', '.join(input_files.EXPORT_FORMATS)}), not {arguments.output!r}")
+    if form not in input_files.MESH_FORMATS:
+        raise WrongArguments(f"--output must be a file of a kind that is written ({', '.join(input_files.MESH_FORMATS)}), not {arguments.output!r}")
     job = {"kind": "decode", "path": arguments.file, "output": arguments.output, "bytes": arguments.bytes or 0, "level": arguments.level}
 
     def show(answer):
