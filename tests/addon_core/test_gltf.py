@@ -91,9 +91,3 @@ def test_a_chain_of_levels(command_line):
     again = (command_line.folder / "out/box.levels.glb").read_bytes()
     command_line.run(*command)
     assert (command_line.folder / "out/box.levels.glb").read_bytes() == again
-
-
-def test_only_what_the_library_writes_is_decoded_to(command_line):
-    command_line.run("remesh", command_line.box("box.obj"), "--output", "out")
-    run = command_line.run("decode", "out/box.hmesh", "--output", "a.glb")
-    assert run.returncode == 2 and "(ply, obj)" in run.err

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import bpy
+import numpy
 import pytest
 
 from conftest import PACKAGE, module
@@ -42,6 +43,25 @@ def test_mesh_files(files, capfd):
     assert run("compare", files / "mesh.ply", files / "out" / "mesh.ply") == 0
     assert run("info", "--check", files / "out" / "mesh.hmesh") == 0
     assert capfd.readouterr().err == ""
+
+
+def test_blender_imports_the_glb_that_is_written(files):
+    options = ("--base-quads", "min", "--levels", 2, "--effort", "quick")
+    assert run("remesh", files / "mesh.ply", "--output", files / "out", *options, "--export", "ply,glb", "--export-levels", "glb") == 0
+    native = module("_native")
+    points, offsets, indices = native.read_mesh(str(files / "out" / "mesh.ply"))
+    module("compat").give_numpy_its_old_names()
+    for name in ("mesh.glb", "mesh.levels.glb"):
+        before = set(bpy.data.objects)
+        bpy.ops.import_scene.gltf(filepath=str(files / "out" / name))
+        (made,) = (item for item in bpy.data.objects if item not in before and item.type == "MESH")
+        # The importer takes y for what is up.
+        placed = numpy.array([made.matrix_world @ vertex.co for vertex in made.data.vertices])[:, [0, 2, 1]] * [1, 1, -1]
+        triangles = numpy.array([tuple(face.vertices) for face in made.data.polygons])
+        assert triangles.shape == (2 * (len(offsets) - 1), 3) and len(made.data.uv_layers) == 1
+        apart = native.compare(points, offsets, indices, placed, 3 * numpy.arange(len(triangles) + 1), triangles.ravel().astype(numpy.int32), 20000)
+        # Quads that are not flat may be split along either diagonal.
+        assert apart["l2"] < 0.02
 
 
 def test_each_mesh_object_of_a_blend_is_an_input(files, capfd):
