@@ -72,13 +72,13 @@ class Batch:
             return self._named(paths)
 
     def run_one(self, item, label):
-        """Does one input and returns its row for the summary. Raises OutputError, and WorkerKilled where another try may do it.
+        """Does one input, an object of a scene in Blender only, and returns its row for the summary. Raises OutputError, and WorkerKilled where another try may do it.
 
         label: a name for the place where its outputs wait until they are complete; what an earlier try has left there is removed.
         """
         with self._outputs(label):
             if not item.error and not item.arrays and input_files.is_scene(item.path):
-                found = self._objects(item.path, 0) if bpy_available() else [input_files.failed_input(item.path, input_files.needs_blender(item.path))]
+                found = self._objects(item.path, 0)
                 failed = [entry for entry in found if entry.error and not entry.object_name]
                 same = [entry for entry in found if entry.object_name == item.object_name]
                 item.arrays, item.error = (same[0].arrays, same[0].error) if same else ("", failed[0].error if failed else "is no longer in the file")

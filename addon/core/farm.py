@@ -14,7 +14,8 @@ from dataclasses import asdict, dataclass
 from . import inputs as input_files
 from . import settings as settings_module
 from .batch import Batch, BatchOptions, OutputError
-from .native import explain, native
+from .native import NativeMissing, explain, native
+from .process import bpy_available
 from .report import summary_row
 from .version import VERSION
 from .worker import write_text
@@ -96,6 +97,8 @@ def do_task(batch, number, console):
         return
     # A machine on which no input can be done must not take one for bad.
     native()
+    if (batch.options.outputs.blend or input_files.is_scene(item.path)) and not item.error and not bpy_available():
+        raise NativeMissing(f"{item.label}: input {number} needs Blender; this is Python without Blender")
     row = Batch(batch.options, console).run_one(item, f"task{number}")
     if row["status"] == "skipped":
         row["status"] = "done"  # by an earlier batch, or by a worker that died before it could leave its record

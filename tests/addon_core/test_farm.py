@@ -105,6 +105,17 @@ def test_a_machine_that_cannot_work_takes_no_input_for_bad(command_line, batch):
     assert run.returncode == 1 and "_native" in run.err and command_line.outputs() == ["batch.json", "batch.tasks"]
 
 
+@pytest.mark.parametrize("change", [lambda content: content["inputs"][0].update(file="../scene.blend", object="Cube"), lambda content: content["outputs"].update(blend=True)])
+def test_a_machine_without_blender_takes_no_scene_for_bad(command_line, batch, change):
+    content = json.loads((command_line.folder / batch).read_text())
+    change(content)
+    (command_line.folder / batch).write_text(json.dumps(content))
+    (command_line.folder / "scene.blend").write_bytes(b"BLENDER")
+    run = command_line.run("task", batch, 1)
+    assert run.returncode == 1 and run.err == "hybrid-mesh: a.obj" + (": Cube" if content["inputs"][0]["object"] else "") + ": input 1 needs Blender; this is Python without Blender\n"
+    assert command_line.outputs() == ["batch.json", "batch.tasks"] and os.listdir(command_line.folder / "out/batch.tasks") == []
+
+
 def test_the_folder_may_be_elsewhere_on_another_machine(command_line):
     shared = command_line.folder / "shared"
     (shared / "scans").mkdir(parents=True)
