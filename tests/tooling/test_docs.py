@@ -65,6 +65,11 @@ def test_links_lead_somewhere_and_options_exist(page):
     assert (broken_links(page, text), unknown_flags(text)) == ([], [])
 
 
+def test_the_first_screen_loads_at_once():
+    pictures = [link for link in LINK.findall((ROOT / "README.md").read_text("utf-8")) if link.endswith(".png")]
+    assert pictures and all((ROOT / link).stat().st_size < 200_000 for link in pictures)
+
+
 def test_what_is_broken_is_seen():
     page = ROOT / "docs/index.md"
     assert broken_links(page, "[a](gallery.md) [b](none.md) [c](gallery.md#levels) ![d](gallery.md#no-such) [e](#where-to-read-on)") == ["none.md", "gallery.md#no-such"]
