@@ -115,7 +115,8 @@ def working_on(folder):
     return made
 
 
-def wait_until(condition, seconds=120):
+def wait_until(condition, seconds=60 + 20 * INPUTS):
+    """Of a busy machine: a task has taken five seconds there."""
     end = time.monotonic() + seconds
     while not (found := condition()):
         assert time.monotonic() < end, "it did not happen in time"
