@@ -12,13 +12,27 @@ bl_info = {
 }
 
 
+_active = []  # the module that has registered
+
+
 def register():
+    from .core.native import NativeMissing, native
+
+    try:
+        native()
+    except NativeMissing as error:
+        # Whoever enables the add-on learns it where its buttons would be.
+        from . import unsupported
+
+        unsupported.register(f"{error}.")
+        _active.append(unsupported)
+        return
     from . import registration
 
     registration.register()
+    _active.append(registration)
 
 
 def unregister():
-    from . import registration
-
-    registration.unregister()
+    while _active:
+        _active.pop().unregister()

@@ -72,13 +72,33 @@ def new_geometry_output(group):
         group.outputs.new("NodeSocketGeometry", "Geometry")
 
 
-def input_key(group, name):
-    """The key of a node group's input in a Geometry Nodes modifier."""
+def _group_input(modifier, name):
+    """What has the value of a node group's input in a Geometry Nodes modifier, and under which name: the modifier itself, by a key, or from some later version on a property."""
+    group = modifier.node_group
     if _HAS_NODE_INTERFACE:
         items = (item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT")
     else:
         items = group.inputs
-    return next(item.identifier for item in items if item.name == name)
+    key = next(item.identifier for item in items if item.name == name)
+    return (getattr(modifier.properties.inputs, key), "value") if hasattr(modifier, "properties") else (modifier, key)
+
+
+def get_group_input(modifier, name):
+    holder, key = _group_input(modifier, name)
+    return holder[key] if holder == modifier else getattr(holder, key)
+
+
+def set_group_input(modifier, name, value):
+    holder, key = _group_input(modifier, name)
+    if holder == modifier:
+        holder[key] = value
+    else:
+        setattr(holder, key, value)
+
+
+def draw_group_input(layout, modifier, name):
+    holder, key = _group_input(modifier, name)
+    layout.prop(holder, f'["{key}"]' if holder == modifier else key, text=name)
 
 
 def grease_pencils():

@@ -96,14 +96,12 @@ def show_preview_only(built):
 
 
 def level_of(preview):
-    modifier = preview.modifiers[PREVIEW_MODIFIER]
-    return modifier[compat.input_key(modifier.node_group, LEVEL_INPUT)]
+    return compat.get_group_input(preview.modifiers[PREVIEW_MODIFIER], LEVEL_INPUT)
 
 
 def set_level(preview, level):
     """Shows a level, 0 the coarsest; what is out of range shows the nearest."""
-    modifier = preview.modifiers[PREVIEW_MODIFIER]
-    modifier[compat.input_key(modifier.node_group, LEVEL_INPUT)] = int(level)
+    compat.set_group_input(preview.modifiers[PREVIEW_MODIFIER], LEVEL_INPUT, int(level))
     preview.update_tag()
 
 
@@ -120,7 +118,7 @@ def draw_level(layout, preview):
     """The Level input as a slider."""
     modifier = preview.modifiers.get(PREVIEW_MODIFIER)
     if modifier and modifier.node_group:
-        layout.prop(modifier, f'["{compat.input_key(modifier.node_group, LEVEL_INPUT)}"]', text=LEVEL_INPUT)
+        compat.draw_group_input(layout, modifier, LEVEL_INPUT)
 
 
 def _preview(name, levels, collection, place, made):

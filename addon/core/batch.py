@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A batch of inputs: each in a process of its own, outputs that appear complete or not at all, and a summary."""
 
+import contextlib
 import json
 import os
 import shutil
 import tempfile
+import threading
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 
 from . import inputs as input_files
 from . import report as reports
 from .native import explain
-from .process import Processes, WorkerFailed, bpy_available
+from .process import Processes, WorkerFailed, WorkerKilled, bpy_available
 from .settings import RemeshSettings
 from .version import VERSION
 from .worker import write_text
@@ -31,56 +33,89 @@ class OutputError(OSError):
     """The output folder cannot be used; nothing has been started."""
 
 
-class Batch:
-    """One run. `show` and `fail` get a line for people for every input that is done or failed."""
+def counts(rows):
+    """The last line of a batch: nobody reads the lines of a hundred inputs."""
+    count, poor = len(rows), sum(row["verdict"] == "poor" for row in rows)
+    failed = sum(row["status"] == "failed" for row in rows)
+    return f"{count} input{'s' if count > 1 else ''}: {count - failed} done, {failed} failed; {poor} poor result{'s' if poor != 1 else ''}"
 
-    def __init__(self, options, show, fail):
+
+class Batch:
+    """What is done with inputs, of one run. console: a Console, which gets a line for every input that is done or failed."""
+
+    def __init__(self, options, console):
         self.options = options
-        self.show = show
-        self.fail = fail
+        self.console = console
         self.processes = Processes()
         self.rows = []
         self._staging = ""
+        self._total = 1
+        self._finished_count = 0
+        self._counting = threading.Lock()
 
     def run(self, paths):
         """Does every input. Returns how many failed. Raises InputsError or OutputError before anything is started."""
+        with self._outputs():
+            failed = self._run_all(self._named(paths))
+            try:
+                self._write_summary(self.rows)
+            except OSError as error:
+                self.console.fail(f"cannot write {os.path.join(self.options.folder, 'summary.csv')}: {explain(error)}")
+                failed += 1
+            if len(self.rows) > 1 or self.rows[0]["verdict"] == "poor":
+                self.console.show(counts(self.rows))
+            return failed
+
+    def inputs(self, paths):
+        """The inputs that there are, none of them done. Raises InputsError or OutputError."""
+        with self._outputs():
+            return self._named(paths)
+
+    def run_one(self, item, label):
+        """Does one input, an object of a scene in Blender only, and returns its row for the summary. Raises OutputError, and WorkerKilled where another try may do it.
+
+        label: a name for the place where its outputs wait until they are complete; what an earlier try has left there is removed.
+        """
+        with self._outputs(label):
+            if not item.error and not item.arrays and input_files.is_scene(item.path):
+                found = self._objects(item.path, 0)
+                failed = [entry for entry in found if entry.error and not entry.object_name]
+                same = [entry for entry in found if entry.object_name == item.object_name]
+                item.arrays, item.error = (same[0].arrays, same[0].error) if same else ("", failed[0].error if failed else "is no longer in the file")
+            return self._one(0, item, raises=WorkerKilled)
+
+    @contextlib.contextmanager
+    def _outputs(self, label=""):
+        """The folder of the outputs, and one in it where they wait."""
         folder = self.options.folder
         new = not os.path.isdir(folder)
         try:
             os.makedirs(folder, exist_ok=True)
+            if label:
+                for name in os.listdir(folder):
+                    if name.startswith(f".hybrid-mesh-{label}-"):
+                        shutil.rmtree(os.path.join(folder, name), ignore_errors=True)
             # Beside the outputs, so that a finished file is moved there by a rename within one file system.
-            self._staging = tempfile.mkdtemp(prefix=".hybrid-mesh-", dir=folder)
+            self._staging = tempfile.mkdtemp(prefix=f".hybrid-mesh-{label}{'-' if label else ''}", dir=folder)
         except OSError as error:
             raise OutputError(f"cannot write to {folder}: {error.strerror or error}") from error
         try:
-            items = self._expand(paths)
-            for item in input_files.name_apart(items, self.options.outputs, folder):
-                self.show(f"{item.label}: another input has this name, its outputs are called {item.name}")
-            failed = self._run_all(items)
-            try:
-                self._write_summary()
-            except OSError as error:
-                self.fail(f"cannot write {os.path.join(folder, 'summary.csv')}: {explain(error)}")
-                failed += 1
-            self._show_counts()
-            return failed
+            yield
         finally:
             self.processes.end()
             shutil.rmtree(self._staging, ignore_errors=True)
             if new and os.path.isdir(folder) and not os.listdir(folder):
                 os.rmdir(folder)
 
-    def _show_counts(self):
-        """The last line of a batch, and of a poor result: nobody reads the lines of a hundred inputs."""
-        count, poor = len(self.rows), sum(row["verdict"] == "poor" for row in self.rows)
-        if count == 1 and not poor:
-            return
-        failed = sum(row["status"] == "failed" for row in self.rows)
-        self.show(f"{count} input{'s' if count > 1 else ''}: {count - failed} done, {failed} failed; {poor} poor result{'s' if poor != 1 else ''}")
+    def _named(self, paths):
+        items = self._expand(paths)
+        for item in input_files.name_apart(items, self.options.outputs, self.options.folder):
+            self.console.show(f"{item.label}: another input has this name, its outputs are called {item.name}")
+        return items
 
     def _expand(self, paths):
         items = []
-        for number, item in enumerate(input_files.expand(paths, self.options.folder, self.fail)):
+        for number, item in enumerate(input_files.expand(paths, self.options.folder, self.console.fail)):
             if item.error or not input_files.is_scene(item.path):
                 items.append(item)
             elif bpy_available():
@@ -109,6 +144,7 @@ class Batch:
     def _run_all(self, items):
         failed = 0
         rows = {}
+        self._total = len(items)
         executor = ThreadPoolExecutor(max_workers=self.options.jobs)
         try:
             waiting = {executor.submit(self._one, number, item): number for number, item in enumerate(items)}
@@ -128,25 +164,39 @@ class Batch:
         self.rows = [rows[number] for number in range(len(items))]
         return failed
 
-    def _one(self, number, item):
-        """Does one input; every way of failing becomes a row and a line."""
+    def _one(self, number, item, raises=()):
+        """Does one input; every way of failing becomes a row and a line, but for exceptions that are to be raised."""
         try:
             status, report = self._do(number, item)
+        except raises:
+            raise
         except Exception as error:  # An input that fails, in whatever way, must not keep the others from being done.
             return self._failed(item, explain(error, item.path))
+        finally:
+            self._tell(item, 1, "")
+        done = self._count()
         if status == "skipped":
-            self.show(f"{item.label}: done before, skipped")
+            self.console.show(f"{done}{item.label}: done before, skipped")
         else:
-            self.show(f"{item.label}: {_figures(report)}")
+            self.console.show(f"{done}{item.label}: {_figures(report)}")
         poor = [reports.reason_line(reason) for reason in reports.reasons(report)]
         for line in poor:
-            self.fail(f"{item.label}: poor: {line}")
+            self.console.fail(f"{item.label}: poor: {line}")
         for warning in report.get("warnings", []):
-            self.fail(f"{item.label}: warning: {warning}")
+            self.console.fail(f"{item.label}: warning: {warning}")
         if poor and self.options.settings.strict:
             # Its files stay, so that one can look.
             return reports.summary_row(item.name, item.label, "failed", report, "; ".join(poor))
         return reports.summary_row(item.name, item.label, status, report)
+
+    def _tell(self, item, fraction, stage):
+        self.console.progress(f"{self._finished_count}/{self._total}", item.label, fraction, stage)
+
+    def _count(self):
+        """What stands before the line of an input that is finished: the how-manieth it is."""
+        with self._counting:
+            self._finished_count += 1
+            return f"[{self._finished_count}/{self._total}] " if self._total > 1 else ""
 
     def _do(self, number, item):
         options = self.options
@@ -165,7 +215,7 @@ class Batch:
             "settings": options.settings.native(), "exports": list(options.outputs.exports), "repaired": options.outputs.repaired,
             "levels": list(options.outputs.levels), "hash": fingerprint,
         }  # fmt: skip
-        report = self.processes.run(job, options.timeout)["report"]
+        report = self.processes.run(job, options.timeout, progress=lambda fraction, stage: self._tell(item, min(fraction, 0.999), stage))["report"]
         if options.outputs.blend:
             stem = os.path.join(folder, item.name)
             job = {
@@ -196,7 +246,8 @@ class Batch:
     def _failed(self, item, cause):
         if self.processes.ended:
             return reports.summary_row(item.name, item.label, "failed", error="interrupted")
-        self.fail(f"{item.label}: {cause}")
+        self._count()
+        self.console.fail(f"{item.label}: {cause}")
         report = {"input": {"file": os.path.basename(item.path)}, "error": cause, "version": VERSION, "settings": self.options.settings.reported()}
         try:
             self._write_whole(item.name + ".report.json", reports.to_json(report))
@@ -204,8 +255,13 @@ class Batch:
             pass  # The line on stderr has said it; a full disk takes no report of itself.
         return reports.summary_row(item.name, item.label, "failed", error=cause)
 
-    def _write_summary(self):
-        self._write_whole("summary.csv", reports.summary_csv(self.rows))
+    def summarize(self, rows):
+        """Writes the summary of inputs that were done elsewhere."""
+        with self._outputs():
+            self._write_summary(rows)
+
+    def _write_summary(self, rows):
+        self._write_whole("summary.csv", reports.summary_csv(rows))
 
     def _write_whole(self, name, text):
         temporary = os.path.join(self._staging, name)

@@ -11,7 +11,8 @@ from .native import explain
 
 MESH_EXTENSIONS = (".ply", ".obj", ".off", ".stl")
 SCENE_EXTENSIONS = (".blend", ".glb", ".gltf", ".fbx")  # which Blender opens or imports; each mesh object of one is an input
-EXPORT_FORMATS = ("ply", "obj")
+MESH_FORMATS = ("ply", "obj")  # that the native module writes
+EXPORT_FORMATS = (*MESH_FORMATS, "glb")
 MOST_NAMED = 5  # of what is skipped in a folder
 
 
@@ -26,10 +27,12 @@ class Input:
     object_name: str = ""  # of a scene's mesh object
     arrays: str = ""  # file with the object's mesh
     error: str = ""  # why it cannot be read, if that is known before it starts
+    shown: str = ""  # what people know the path as, if not as `path`
 
     @property
     def label(self):
-        return f"{self.path}: {self.object_name}" if self.object_name else self.path
+        path = self.shown or self.path
+        return f"{path}: {self.object_name}" if self.object_name else path
 
 
 @dataclass
@@ -53,8 +56,9 @@ class Outputs:
         return [*suffixes, self.report]
 
     def level_suffixes(self, count):
-        """Of the levels' files, with so many levels."""
-        return [f".N{level}.{form}" for level in range(count) for form in self.levels]
+        """Of the levels' files, with so many levels: a file for each, but of .glb one for all."""
+        suffixes = [f".N{level}.{form}" for level in range(count) for form in self.levels if form != "glb"]
+        return [*suffixes, ".levels.glb"] if "glb" in self.levels else suffixes
 
 
 def is_scene(path):

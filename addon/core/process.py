@@ -2,7 +2,7 @@
 """A process of its own for every piece of work: one that crashes, hangs or runs out of memory is one failure and no more.
 
 The child is `worker_process.py`. It gets its job as one line of JSON on stdin, which then stays open so that the child sees its parent
-die, and answers with one marked line on stdout (Blender writes there too).
+die, and answers with one marked line on stdout (Blender writes there too). Before it there may be lines with another mark that say how far it is.
 """
 
 import json
@@ -13,11 +13,16 @@ import sys
 import threading
 
 RESULT_MARK = "HYBRID_MESH_RESULT "
+PROGRESS_MARK = "HYBRID_MESH_PROGRESS "
 SCRIPT = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "worker_process.py")
 
 
 class WorkerFailed(ValueError):
     """The work failed; the message is one line for people."""
+
+
+class WorkerKilled(WorkerFailed):
+    """Someone else ended the work, a user or a system without memory: what it worked on may be good, and another try of it, too."""
 
 
 class Processes:
@@ -28,8 +33,8 @@ class Processes:
         self._running = set()
         self._ended = False
 
-    def run(self, job, timeout=None, needs_bpy=False):
-        """Does a job in a child and returns its answer, a dictionary. Raises WorkerFailed."""
+    def run(self, job, timeout=None, needs_bpy=False, progress=None):
+        """Does a job in a child and returns its answer, a dictionary. Raises WorkerFailed. progress(fraction, stage) is told how far it is, where the job says so."""
         process = self._start(worker_command(needs_bpy))
         late = threading.Event()
         timer = None
@@ -50,6 +55,8 @@ class Processes:
             for line in process.stdout:
                 if line.startswith(RESULT_MARK) and line.endswith("\n"):  # One that is cut off is no answer.
                     answer = json.loads(line[len(RESULT_MARK) :])
+                elif progress and line.startswith(PROGRESS_MARK) and line.endswith("\n"):
+                    progress(*json.loads(line[len(PROGRESS_MARK) :]))
             code = process.wait()
             drain.join(5)
         finally:
@@ -61,7 +68,8 @@ class Processes:
                 raise WorkerFailed("cancelled")
             if late.is_set():
                 raise WorkerFailed(f"timed out after {timeout:g} s")
-            raise WorkerFailed(_how_it_ended(code, errors))
+            killed = os.name == "posix" and code in (-signal.SIGKILL, -signal.SIGTERM)
+            raise (WorkerKilled if killed else WorkerFailed)(_how_it_ended(code, errors))
         if "error" in answer:
             raise WorkerFailed(answer["error"])
         return answer

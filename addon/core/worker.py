@@ -10,8 +10,10 @@ import time
 from . import report as reports
 from . import settings as settings_module
 from .native import explain, native
-from .process import RESULT_MARK
+from .process import PROGRESS_MARK, RESULT_MARK
 from .version import VERSION
+
+PROGRESS_SECONDS = 0.5  # between two words on how far a job is
 
 
 def main(jobs):
@@ -48,7 +50,7 @@ def remesh(job):
         else:
             mesh = module.read_mesh(job["path"])
     read = time.monotonic()
-    result = module.remesh(*mesh, settings.native(), density)
+    result = _watched(module.start_remesh(*mesh, settings.native(), density))
     worked = time.monotonic()
 
     stem = os.path.join(job["folder"], job["name"])
@@ -56,19 +58,23 @@ def remesh(job):
     kept = {"name": job["name"], "settings": settings.reported(), "version": VERSION, "verdict": report.get("verdict")}
     result.hierarchy.save(stem + ".hmesh", json.dumps(kept))
     write_text(stem + ".plan.json", result.plan)
+    z_up = bool(job.get("arrays"))  # Blender's; what a file's axes mean nobody knows
     if job["exports"]:
         final = result.final_mesh()
         for form in job["exports"]:
-            module.write_mesh(f"{stem}.{form}", final["points"], final["offsets"], final["indices"])
+            _write_mesh(f"{stem}.{form}", job["name"], final, z_up)
     if job["levels"]:
-        for number in range(len(report.get("levels", []))):
-            level = result.hierarchy.level(f"N{number}")
-            for form in job["levels"]:
-                module.write_mesh(f"{stem}.N{number}.{form}", level["points"], level["offsets"], level["indices"])
+        levels = [(f"N{number}", result.hierarchy.level(f"N{number}")) for number in range(len(report.get("levels", [])))]
+        for form in job["levels"]:
+            if form == "glb":
+                _write_glb(f"{stem}.levels.glb", levels, z_up)
+            else:
+                for name, level in levels:
+                    _write_mesh(f"{stem}.{name}.{form}", name, level, z_up)
     if job["repaired"]:
-        repaired = result.repaired()[:3]
+        repaired = dict(zip(("points", "offsets", "indices"), result.repaired()))
         for form in job["exports"] or ["ply"]:
-            module.write_mesh(f"{stem}.repaired.{form}", *repaired)
+            _write_mesh(f"{stem}.repaired.{form}", job["name"], repaired, z_up)
     seconds = {"read": round(read - began, 4), **report.get("seconds", {})}
     seconds["write"] = round(time.monotonic() - worked, 4)
     seconds.pop("total", None)  # the native part's; here is the whole, and it stands last
@@ -77,6 +83,30 @@ def remesh(job):
     report["peak_memory_bytes"] = reports.peak_memory_bytes()
     write_text(stem + ".report.json", reports.to_json(report))
     return {"report": report}
+
+
+def _write_mesh(path, name, mesh, z_up):
+    if path.endswith(".glb"):
+        _write_glb(path, [(name, mesh)], z_up)
+    else:
+        native().write_mesh(path, mesh["points"], mesh["offsets"], mesh["indices"])
+
+
+def _write_glb(path, meshes, z_up):
+    from . import gltf  # which needs NumPy; where there is none, this module still loads to say so
+
+    gltf.write(path, meshes, z_up)
+
+
+def _watched(running):
+    """The result of a native job; the parent reads meanwhile how far it is."""
+    told = None
+    while not running.wait(PROGRESS_SECONDS):
+        now = (round(running.progress, 3), running.stage)
+        if now != told:
+            os.write(1, ("\n" + PROGRESS_MARK + json.dumps(now) + "\n").encode())
+            told = now
+    return running.result()
 
 
 def finished_report(text, job, settings):

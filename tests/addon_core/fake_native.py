@@ -243,8 +243,8 @@ def remesh(points, offsets, indices, settings, density=None):
 class Job:
     """Takes HYBRID_MESH_FAKE_SECONDS, then has its result."""
 
-    def __init__(self, mesh, settings):
-        self._cancelled, self._settings, self._mesh = threading.Event(), settings, mesh
+    def __init__(self, mesh, settings, density=None):
+        self._cancelled, self._settings, self._mesh, self._density = threading.Event(), settings, mesh, density
         self._began, self._seconds = time.monotonic(), float(os.environ.get("HYBRID_MESH_FAKE_SECONDS", "0.1"))
         self._thread = threading.Thread(target=self._cancelled.wait, args=(self._seconds,), daemon=True)
         self._thread.start()
@@ -272,14 +272,14 @@ class Job:
         self.wait()
         if self._cancelled.is_set():
             raise Cancelled("cancelled")
-        return remesh(*self._mesh, self._settings)
+        return remesh(*self._mesh, self._settings, self._density)
 
 
 _jobs = []
 
 
 def start_remesh(points, offsets, indices, settings, density=None):
-    _jobs.append(Job((points, offsets, indices), settings))
+    _jobs.append(Job((points, offsets, indices), settings, density))
     return _jobs[-1]
 
 

@@ -233,7 +233,7 @@ def test_inputs_of_one_name_get_names_of_their_own(command_line):
         (("remesh", "box.obj", "--output", "out", "--features", "nan"), "--features"),
         (("remesh", "box.obj", "--output", "out", "--features", "-40"), "--features"),
         (("remesh", "box.obj", "--output", "out", "--features", "180"), "--features"),
-        (("remesh", "box.obj", "--output", "out", "--export", "glb"), "--export"),
+        (("remesh", "box.obj", "--output", "out", "--export", "fbx"), "--export"),
         (("remesh", "box.obj", "--output", "out", "--jobs", "0"), "--jobs"),
         (("remesh", "box.obj", "--output", "out", "--timeout", "-1"), "--timeout"),
         (("remesh", "box.obj", "--output", "out", "--drop-components", "1"), "--drop-components"),

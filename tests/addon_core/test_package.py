@@ -2,8 +2,12 @@
 """Rules about the package itself."""
 
 import ast
+import os
 import pathlib
 import re
+import shutil
+import subprocess
+import sys
 
 import hybrid_mesh
 import pytest
@@ -45,7 +49,7 @@ def test_every_file_names_its_licence(path):
 
 def test_every_operator_and_panel_is_registered():
     listed = (ADDON / "registration.py").read_text(encoding="utf-8")
-    for path in ADDON.rglob("*.py"):
+    for path in set(ADDON.rglob("*.py")) - {ADDON / "unsupported.py"}:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef) and re.match(r"HYBRID_MESH_|HybridMesh", node.name):
                 assert f".{node.name}," in listed, f"{node.name} is not registered"
@@ -56,3 +60,36 @@ def test_all_versions_are_one():
     assert f'version = "{VERSION}"' in manifest
     assert ".".join(map(str, hybrid_mesh.bl_info["version"])) == VERSION
     assert f"VERSION {VERSION} " in (ROOT / "CMakeLists.txt").read_text()
+
+
+MODULE = "_native.cpython-{}-x86_64-linux-gnu.so"
+THIS = "{}{}".format(*sys.version_info)
+
+
+@pytest.mark.parametrize(
+    "files, changed, said",
+    [
+        ([THIS], "platform.machine = lambda: 'aarch64'", "is for Linux on x86-64 processors, not for Linux on aarch64"),
+        ([THIS], "sys.platform, platform.system, platform.machine = 'darwin', lambda: 'Darwin', lambda: 'arm64'", "is for Linux on x86-64 processors, not for Darwin on arm64"),
+        (["39", "310"], "", "is for Python 3.9 and 3.10, not for Python {}.{}, which runs here".format(*sys.version_info)),
+        ([], "", "cannot be loaded"),
+        ([THIS], "", "file too short"),
+    ],
+)  # fmt: skip
+def test_where_the_module_does_not_run_there_is_one_sentence(tmp_path, files, changed, said):
+    shutil.copytree(ADDON, tmp_path / "hybrid_mesh", ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    for tag in files:
+        (tmp_path / "hybrid_mesh" / MODULE.format(tag)).write_bytes(b"")
+    code = f"import platform, sys; {changed or 'pass'}; from hybrid_mesh.core import cli; sys.exit(cli.run(['remesh', 'a.obj', '--output', 'out']))"
+    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)}, capture_output=True, encoding="utf-8")
+    assert (run.returncode, run.stdout, run.stderr.count("\n")) == (1, "", 1) and said in run.stderr
+
+
+def test_a_system_that_is_too_old_is_named(monkeypatch, tmp_path):
+    from hybrid_mesh.core import native
+
+    (tmp_path / "core").mkdir()
+    (tmp_path / MODULE.format(THIS)).write_bytes(b"")
+    monkeypatch.setattr(native, "__file__", str(tmp_path / "core/native.py"))
+    text = native._misfit(ImportError("/lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.99' not found (required by _native.so)"))
+    assert text.startswith("this build of Hybrid Mesh needs glibc 2.99 or later; this system has glibc 2.")

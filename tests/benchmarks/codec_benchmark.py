@@ -16,7 +16,7 @@ from bench import native
 
 ERRORS = [20e-4, 10e-4, 5e-4, 2e-4, 1e-4]
 MODELS = ["feline", "bunny", "horse", "armadillo", "max_planck", "camel", "mannequin"]  # where no folder is given
-# What gives good streams unless options are given: see README.md.
+# What gives good streams unless options are given: see docs/reference/command_line.md.
 VERTICES = 20000
 OTHERS = ["draco", "meshoptimizer"]
 

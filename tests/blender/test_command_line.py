@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import bpy
+import numpy
 import pytest
 
 from conftest import PACKAGE, module
@@ -44,6 +45,26 @@ def test_mesh_files(files, capfd):
     assert capfd.readouterr().err == ""
 
 
+def test_blender_imports_the_glb_that_is_written(files):
+    options = ("--base-quads", "min", "--levels", 2, "--effort", "quick")
+    assert run("remesh", files / "mesh.ply", "--output", files / "out", *options, "--export", "ply,glb", "--export-levels", "glb") == 0
+    native = module("_native")
+    points, offsets, indices = native.read_mesh(str(files / "out" / "mesh.ply"))
+    module("compat").give_numpy_its_old_names()
+    for name, finest in (("mesh.glb", "mesh"), ("mesh.levels.glb", "N2")):
+        before = set(bpy.data.objects)
+        bpy.ops.import_scene.gltf(filepath=str(files / "out" / name))
+        # Some versions bring in the coarser levels, too, which the scene does not have.
+        (made,) = (item for item in bpy.data.objects if item not in before and item.name.startswith(finest))
+        # The importer takes y for what is up.
+        placed = numpy.array([made.matrix_world @ vertex.co for vertex in made.data.vertices])[:, [0, 2, 1]] * [1, 1, -1]
+        triangles = numpy.array([tuple(face.vertices) for face in made.data.polygons])
+        assert triangles.shape == (2 * (len(offsets) - 1), 3) and len(made.data.uv_layers) == 1
+        apart = native.compare(points, offsets, indices, placed, 3 * numpy.arange(len(triangles) + 1), triangles.ravel().astype(numpy.int32), 20000)
+        # Quads that are not flat may be split along either diagonal.
+        assert apart["l2"] < 0.02
+
+
 def test_each_mesh_object_of_a_blend_is_an_input(files, capfd):
     assert run("remesh", files / "scene.blend", files / "mesh.ply", "--output", files / "out", "--vertices", 1000, "--export", "ply") == 1
     rows = summary(files / "out")
@@ -55,6 +76,23 @@ def test_each_mesh_object_of_a_blend_is_an_input(files, capfd):
     assert native.compare(*native.read_mesh(str(files / "mesh.ply")), *native.read_mesh(str(files / "out" / "first scan.ply")), 10000)["hausdorff"] < 0.02
     points = native.read_mesh(str(files / "out" / "Größe 猫.ply"))[0]
     assert abs(points).max() < 1  # the modifier was applied
+
+
+def test_a_farm_does_the_objects_of_a_blend_one_by_one(files, capfd):
+    options = ("--base-quads", "min", "--levels", 1, "--effort", "quick")
+    assert run("remesh", files / "scene.blend", "--output", files / "farm", *options, "--farm") == 0
+    batch = files / "farm" / "batch.json"
+    for name in ("first scan", "no faces"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    bpy.ops.wm.save_as_mainfile(filepath=str(files / "scene.blend"))
+    numbers = {name: number for number, name in enumerate(json.loads(batch.read_text(encoding="utf-8"))["names"], 1)}
+    capfd.readouterr()
+    assert run("task", batch, numbers["Größe 猫"]) == run("task", batch, numbers["first scan"]) == 0
+    assert capfd.readouterr().err.strip().endswith("scene.blend: first scan: is no longer in the file")
+    assert run("merge-reports", batch) == 1
+    assert {name: row["status"] for name, row in summary(files / "farm").items()} == {"first scan": "failed", "Größe 猫": "done", "no faces": "failed"}
+    assert run("remesh", files / "scene.blend", "--output", files / "alone", *options) == 0
+    assert (files / "farm" / "Größe 猫.hmesh").read_bytes() == (files / "alone" / "Größe 猫.hmesh").read_bytes()
 
 
 def test_one_name_twice_gets_two_names(files, capfd):

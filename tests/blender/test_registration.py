@@ -65,6 +65,29 @@ def test_a_failure_half_way_is_loud_and_leaves_nothing(unregistered, break_somet
     registration.unregister()
 
 
+def test_a_machine_that_the_module_does_not_run_on_gets_a_sentence(monkeypatch, capfd):
+    package, native = module(""), module("core.native")
+
+    def refuse():
+        raise native.NativeMissing("this build of Hybrid Mesh is for another machine")
+
+    package.unregister()
+    assert registered() == ([], [], False)
+    try:
+        with monkeypatch.context() as patch:
+            patch.setattr(native, "native", refuse)
+            package.register()
+            assert registered() == ([], [], False)
+            assert capfd.readouterr().err == "Hybrid Mesh: this build of Hybrid Mesh is for another machine.\n"
+            panel = module("unsupported").HYBRID_MESH_PT_unsupported
+            assert panel.is_registered and panel.reason == "this build of Hybrid Mesh is for another machine."
+        package.unregister()
+        assert not panel.is_registered
+    finally:
+        package.register()
+    assert all(registered())
+
+
 def test_registering_twice_is_refused_and_changes_nothing():
     before = registered()
     with pytest.raises(ValueError):

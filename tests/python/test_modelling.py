@@ -365,8 +365,8 @@ def test_random_steps_keep_all_invariants(tmp_path):
     assert min(done.values()) > 3 and sum(done.values()) > refused
 
 
-def test_the_example_of_the_readme(tmp_path, monkeypatch):
-    text = (Path(__file__).resolve().parents[2] / "README.md").read_text("utf-8")
+def test_the_example_of_the_documentation(tmp_path, monkeypatch):
+    text = (Path(__file__).resolve().parents[2] / "docs/reference/python.md").read_text("utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     names = {}

@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 LAYERS = ["decoder", "base", "surface", "parameterization", "topology", "layout", "hierarchy", "construction", "subdivision", "wavelets", "remesh", "codec", "bindings"]
 # Folders inside a layer. A file outside them is seen by all of them, and sees none.
 ROOMS = {"decoder": ["bits", "forest", "structure", "transform", "planes", "reader"], "layout": ["curves", "disks", "base", "regions", "drawn", "operations", "search"]}
-SOURCE = {".h", ".cpp", ".py", ".cmake", ".js", ".css", ".html"}
+SOURCE = {".h", ".cpp", ".py", ".cmake", ".go", ".js", ".css", ".html", ".yaml", ".yml"}
 
 
 def files():
@@ -23,7 +23,7 @@ def files():
     if listed.returncode == 0:
         names = [Path(name) for name in listed.stdout.decode().split("\0") if name]
         return sorted({name for name in names if (ROOT / name).is_file()})
-    folders = ["native", "addon", "scripts", "tests", "blend_samples"]  # an exported tree
+    folders = ["native", "addon", "scripts", "tests", "docs", "blend_samples"]  # an exported tree
     return sorted(p.relative_to(ROOT) for folder in folders for p in (ROOT / folder).rglob("*") if p.is_file())
 
 
