@@ -25,6 +25,7 @@ class Built:
     preview: bpy.types.Object
     blocks: list  # all data-blocks that were made, in order
     matrix: numpy.ndarray  # object to world, when it was built
+    warning: str = ""  # what could not be carried over, for people
 
 
 def build(name, levels, matrix, scene, place=None, source=None, carry=None):

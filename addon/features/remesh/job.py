@@ -67,6 +67,8 @@ class RemeshJobOperator(NativeJobOperator):
                     obj.hide_set(True)
         for one in built:
             self.report({"INFO"}, _line(one))
+            if one.warning:
+                self.report({"WARNING"}, f"{one.collection.name}: {one.warning}")
         for task, result in results:
             self._judge(task.name, json.loads(result.report), task.note[1].strict)
 
@@ -97,9 +99,10 @@ def build_hierarchy(context, obj, result, source, settings):
     report["settings"] = settings.reported()
     repaired = result.repaired()
     at_hand = kept.Kept(result.hierarchy, source.matrix, source=source, settings=settings, repaired=repaired)
-    return hierarchies.build(
-        context, obj.name, at_hand, report, plan=result.plan, place=placement.same_place(obj), source=obj, carry=transfer.carrier(source, repaired)
-    )
+    carry = transfer.Carrier(source, repaired)
+    built = hierarchies.build(context, obj.name, at_hand, report, plan=result.plan, place=placement.same_place(obj), source=obj, carry=carry)
+    built.warning = carry.warning()
+    return built
 
 
 def _line(built):
