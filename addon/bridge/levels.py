@@ -130,12 +130,15 @@ def _preview(name, levels, collection, place, made):
     made.append(mesh)
     for material in levels[-1].data.materials:
         mesh.materials.append(material)
-    group = _level_switch(with_suffix(name, " levels"), levels)
-    made.append(group)
+    switch = _level_switch(with_suffix(name, " levels"), levels)
+    made.append(switch)
     preview = _new_object(title, mesh, collection, place)
     made.append(preview)
+    # What a modifier above the preview's own looks groups up in; the weights come with the level's geometry, by the groups' numbers.
+    for group in levels[-1].vertex_groups:
+        preview.vertex_groups.new(name=group.name)
     modifier = preview.modifiers.new(PREVIEW_MODIFIER, "NODES")
-    modifier.node_group = group
+    modifier.node_group = switch
     set_level(preview, len(levels) - 1)
     return preview
 

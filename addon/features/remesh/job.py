@@ -65,6 +65,8 @@ class RemeshJobOperator(NativeJobOperator):
             for obj in sources:
                 if objects.in_view_layer(obj, context.view_layer):
                     obj.hide_set(True)
+                if objects.is_local(obj):
+                    obj.hide_render = True  # The preview is rendered in its place.
         for one in built:
             self.report({"INFO"}, _line(one))
             if one.warning:

@@ -146,7 +146,7 @@ SETTING_NAMES = tuple(RemeshProperties.__annotations__)
 
 
 class HybridMeshScene(RemeshProperties, bpy.types.PropertyGroup):
-    hide_source: BoolProperty(name="Hide Source", description="Hide the source in the viewport, so that the result is seen", default=True)
+    hide_source: BoolProperty(name="Hide Source", description="Hide the source in viewports and renders, so that the result is seen in its place", default=True)
     cubes: CUBES
 
 
