@@ -70,6 +70,63 @@ def remove(built):
     _remove(built.blocks)
 
 
+def take_over(built, collection, preview, old):
+    """Has the objects of a hierarchy show what build() has made, which is taken apart; returns Built of these objects.
+
+    old: level name: object. Objects of levels that there are no more go; those of new ones come into the collection. The preview (None: it is gone) shows the level
+    of the same name as before.
+    """
+    shown = next((name for name, obj in old.items() if preview is not None and obj == shown_object(preview)), None)
+    chosen = []
+    for name, made in zip(built.level_names, built.levels, strict=True):
+        obj = old.pop(name, None)
+        if obj is None:
+            collection.objects.link(made)
+            built.collection.objects.unlink(made)
+            obj = made
+        else:
+            _exchange_mesh(obj, made.data)
+            bpy.data.objects.remove(made)
+        chosen.append(obj)
+    for obj in old.values():
+        mesh = obj.data
+        bpy.data.objects.remove(obj)
+        if not mesh.users:
+            bpy.data.meshes.remove(mesh)
+    if preview is None:
+        preview = built.preview
+        collection.objects.link(preview)
+    else:
+        _switch_again(preview, chosen, built.preview)
+        mesh = built.preview.data
+        bpy.data.objects.remove(built.preview)
+        bpy.data.meshes.remove(mesh)
+    set_level(preview, built.level_names.index(shown) if shown in built.level_names else len(chosen) - 1)
+    bpy.data.collections.remove(built.collection)
+    return Built(collection, built.level_names, chosen, preview, [], built.matrix, built.warning)
+
+
+def _exchange_mesh(obj, mesh):
+    before, name = obj.data, obj.data.name
+    obj.data = mesh
+    if not before.users:
+        bpy.data.meshes.remove(before)
+        mesh.name = name
+
+
+def _switch_again(preview, levels, other):
+    """Gives a preview a switch between objects in the place of the one that it has; that of the other preview goes."""
+    modifier = preview.modifiers.get(PREVIEW_MODIFIER) or preview.modifiers.new(PREVIEW_MODIFIER, "NODES")
+    before, unused = modifier.node_group, other.modifiers[PREVIEW_MODIFIER].node_group
+    modifier.node_group = _level_switch(unused.name, levels)
+    other.modifiers.clear()
+    name = unused.name if before is None else before.name
+    for group in {before, unused} - {None}:
+        if not group.users:
+            bpy.data.node_groups.remove(group)
+    modifier.node_group.name = name
+
+
 def add_figures(mesh, arrays):
     """What a level says of its faces as attributes: stretch (also as the active colours), anisotropy, patch, irregular faces, what opened there, addresses."""
     stretch = arrays.get("stretch")

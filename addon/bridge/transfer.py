@@ -83,9 +83,11 @@ class Carrier:
     def __init__(self, source, repaired=None):
         self._source, self._triangles = source, source.mesh.indices.reshape(-1, 3)
         self._faces = None if repaired is None else matching_faces(repaired[0], repaired[2].reshape(-1, 3), source.mesh.points, self._triangles)
-        self._unserved = []  # objects on which the source's active UV map cannot serve
+        self._called = 0
+        self._unserved = []  # numbers of the calls for levels on which the source's active UV map cannot serve
 
     def __call__(self, obj, arrays):
+        self._called += 1
         if self._faces is not None and (arrays.get("source_face") is None or not len(self._faces)):
             return
         place = Places(self._source, arrays, self._places(arrays))
@@ -115,14 +117,14 @@ class Carrier:
                 active = mesh.uv_layers[name if serves else meshes.PATCH_UV]
                 mesh.uv_layers.active, active.active_render = active, True
                 if not serves:
-                    self._unserved.append(obj.name)
+                    self._unserved.append(self._called - 1)
 
-    def warning(self):
-        """A line for people where the source's UV map cannot serve; empty where there is nothing to say."""
+    def warning(self, level_names):
+        """A line for people where the source's UV map cannot serve; empty where there is nothing to say. level_names: of the levels in the order of the calls."""
         if not self._unserved:
             return ""
         name = self._source.carried.active_uv
-        why = f"most faces lie across its seams on {', '.join(self._unserved)}" if self._maps[name].has_area else "most of its faces have no area in it"
+        why = f"most faces lie across its seams on {', '.join(level_names[number] for number in self._unserved)}" if self._maps[name].has_area else "most of its faces have no area in it"
         return f"the UV map {name!r} cannot serve: {why}; {meshes.PATCH_UV!r} is active there"
 
     @functools.cached_property

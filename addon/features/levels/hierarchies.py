@@ -25,6 +25,25 @@ def build(context, name, at_hand, report, plan="", place=None, source=None, carr
     return built
 
 
+def take_over(built, collection):
+    """Has a hierarchy's own collection and objects show what build() has made, in the place of what they show; returns levels.Built of these."""
+    made, old = built.collection.hybrid_mesh, collection.hybrid_mesh
+    old.report, old.operations, old.token = made.report, made.operations, made.token
+    old.matrix = [value for column in made.matrix.transposed() for value in column]
+    if made.plan is not None and old.plan is not None:
+        old.plan.from_string(made.plan.as_string())
+        bpy.data.texts.remove(made.plan)
+    elif made.plan is not None:
+        old.plan = made.plan
+    before = {obj.hybrid_mesh.level: obj for obj in collection.objects if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == collection}
+    built = levels.take_over(built, collection, old.preview, before)
+    old.preview = built.preview
+    for obj in (*built.levels, built.preview):
+        obj.hybrid_mesh.hierarchy = collection
+    levels.show_preview_only(built)
+    return built
+
+
 def remove(built):
     """Takes back what build() has made."""
     plan = built.collection.hybrid_mesh.plan

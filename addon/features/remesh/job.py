@@ -55,7 +55,7 @@ class RemeshJobOperator(NativeJobOperator):
         built = []
         try:
             for obj, (task, result) in zip(sources, results, strict=True):
-                built.append(build_hierarchy(context, obj, result, *task.note))
+                built.append(self.build(context, obj, result, *task.note))
         except BaseException:
             for one in built:
                 hierarchies.remove(one)
@@ -81,6 +81,10 @@ class RemeshJobOperator(NativeJobOperator):
         for reason in reports.reasons(report):
             self.report({"ERROR" if strict else "WARNING"}, f"{name}: poor: {reason['text']}")
 
+    def build(self, context, obj, result, source, settings):
+        """levels.Built of a task's result."""
+        return build_hierarchy(context, obj, result, source, settings)
+
     def hides_source(self, context):
         raise NotImplementedError
 
@@ -103,7 +107,7 @@ def build_hierarchy(context, obj, result, source, settings):
     at_hand = kept.Kept(result.hierarchy, source.matrix, source=source, settings=settings, repaired=repaired)
     carry = transfer.Carrier(source, repaired)
     built = hierarchies.build(context, obj.name, at_hand, report, plan=result.plan, place=placement.same_place(obj), source=obj, carry=carry)
-    built.warning = carry.warning()
+    built.warning = carry.warning(built.level_names)
     return built
 
 
