@@ -3,6 +3,7 @@
 
 import math
 
+import blf
 import bpy
 import numpy
 
@@ -79,6 +80,28 @@ def input_key(group, name):
     else:
         items = group.inputs
     return next(item.identifier for item in items if item.name == name)
+
+
+def flat_shader():
+    """The shader that draws things of one colour."""
+    import gpu  # It is not there without a window.
+
+    return gpu.shader.from_builtin("UNIFORM_COLOR" if _HAS_NODE_INTERFACE else "2D_UNIFORM_COLOR")
+
+
+def font_size(font, size):
+    if _HAS_NODE_INTERFACE:
+        blf.size(font, size)
+    else:
+        blf.size(font, size, 72)
+
+
+def draw_progress(layout, factor, text):
+    """A bar, or in words where there are no bars."""
+    if hasattr(layout, "progress"):
+        layout.progress(factor=factor, text=text)
+    else:
+        layout.label(text=text)
 
 
 def grease_pencils():

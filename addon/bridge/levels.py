@@ -170,8 +170,17 @@ def shown_object(preview):
     modifier = preview.modifiers.get(PREVIEW_MODIFIER)
     if modifier is None or modifier.node_group is None:
         return None
-    objects = [node.inputs["Object"].default_value for node in modifier.node_group.nodes if node.bl_idname == _OBJECT_NODE]
+    objects = _switched(modifier)
     return objects[min(max(level_of(preview), 0), len(objects) - 1)] if objects else None
+
+
+def count(preview):
+    """How many levels a preview switches between."""
+    return len(_switched(preview.modifiers[PREVIEW_MODIFIER]))
+
+
+def _switched(modifier):
+    return [node.inputs["Object"].default_value for node in modifier.node_group.nodes if node.bl_idname == _OBJECT_NODE]
 
 
 def draw_level(layout, preview):

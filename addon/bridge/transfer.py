@@ -147,6 +147,12 @@ def nearest_triangles(mesh):
     return lambda points: numpy.array([tree.find_nearest(point)[2] for point in numpy.asarray(points).tolist()], dtype=numpy.int64)
 
 
+def distances(mesh):
+    """A function that finds how far points are from triangle MeshArrays."""
+    tree = BVHTree.FromPolygons(mesh.points.tolist(), mesh.indices.reshape(-1, 3).tolist(), all_triangles=True)
+    return lambda points: numpy.array([tree.find_nearest(point)[3] for point in numpy.asarray(points).tolist()])
+
+
 class Places:
     """Where each vertex of a level (a MeshDict) lies on the source: over which triangle, and with what weights of its corners."""
 

@@ -10,6 +10,7 @@ from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
 from ...jobs import NativeJobOperator
+from ..display import properties as display_properties
 from ..levels import hierarchies, kept
 from ..levels import properties as hierarchy_properties
 from ..topology import properties as topology_properties
@@ -61,6 +62,8 @@ class RemeshJobOperator(NativeJobOperator):
                 hierarchies.remove(one)
             raise
         view.select_only(context, *(one.preview for one in built))
+        for one in built:
+            display_properties.show(context, one.collection)
         if self.hides_source(context):
             for obj in sources:
                 if objects.in_view_layer(obj, context.view_layer):

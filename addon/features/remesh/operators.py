@@ -8,10 +8,10 @@ from ..layouts import properties as layout_properties
 from ..levels import properties as hierarchy_properties
 from ..topology import properties as topology_properties
 from .job import RemeshJobOperator, remesh_task
-from .properties import RemeshProperties, apply_settings, core_settings, draw_advanced, draw_settings
+from .properties import RemeshProperties, RemeshSwitches, apply_settings, core_settings, draw_advanced, draw_settings
 
 
-class HYBRID_MESH_OT_remesh(RemeshProperties, RemeshJobOperator):
+class HYBRID_MESH_OT_remesh(RemeshSwitches, RemeshProperties, RemeshJobOperator):
     """Make a hierarchy of quad meshes of each selected mesh object; of previews, levels and layouts, their source is remeshed. The source stays as it is"""
 
     bl_idname = "hybrid_mesh.remesh"
@@ -81,7 +81,14 @@ class HYBRID_MESH_OT_preset(bpy.types.Operator):
     bl_label = "Remesh Preset"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    name: EnumProperty(name="Preset", items=[(key.upper(), label, text) for key, (label, text, _) in core.PRESETS.items()])
+    name: EnumProperty(
+        name="Preset",
+        items=[(key.upper(), f"{label}: {core.preset_summary(key)}", text) for key, (label, text, _) in core.PRESETS.items()],
+    )
+
+    @classmethod
+    def description(cls, context, properties):
+        return f"{core.PRESETS[properties.name.lower()][1]}. Sets {core.preset_summary(properties.name.lower())}; all other settings as they are at first"
 
     def execute(self, context):
         apply_settings(context.scene.hybrid_mesh, core.preset(self.name.lower()))
