@@ -24,21 +24,19 @@ def lines(figures, diagonal, length_text):
     poles = reports.irregular_count(figures) if figures.get("irregular_vertices") is not None else None
     if poles is not None:
         said.append("No poles" if not poles else f"{poles:,} pole{'' if poles == 1 else 's'}")
-    shape = quad_shape(figures.get("scaled_jacobian") or {})
+    shape = quad_shape(figures.get("scaled_jacobian") or {}, figures.get("quads") or 0)
     if shape:
         said.append(f"Quad shape: {shape}")
     return said
 
 
-def quad_shape(jacobian):
-    """In a word; empty where it was not measured."""
+def quad_shape(jacobian, quads):
+    """In a word, and how many quads are folded; empty where it was not measured."""
     worst = jacobian.get("p05")
     if worst is None:
         return ""
-    folded = jacobian.get("inverted") or 0
-    if folded:
-        return f"poor, {percent(folded)} folded"
-    return "good" if worst >= _GOOD else "fair" if worst >= _FAIR else "poor"
+    folded = round((jacobian.get("inverted") or 0) * quads)
+    return ("good" if worst >= _GOOD else "fair" if worst >= _FAIR else "poor") + (f", {folded:,} folded" if folded else "")
 
 
 def time_left(progress, seconds):

@@ -21,9 +21,9 @@ def test_what_is_said_of_a_level():
     assert readout.figures_of({}, "N0", True) == readout.figures_of({}, "N0", False) == {}
 
 
-@pytest.mark.parametrize("jacobian, words", [({}, ""), ({"p05": 0.5}, "fair"), ({"p05": 0.1}, "poor"), ({"p05": 0.9, "inverted": 0.0123}, "poor, 1.2 % folded")])
+@pytest.mark.parametrize("jacobian, words", [({}, ""), ({"p05": 0.5}, "fair"), ({"p05": 0.1}, "poor"), ({"p05": 0.9, "inverted": 0.0123}, "good, 12 folded")])
 def test_the_shape_of_quads(jacobian, words):
-    assert readout.quad_shape(jacobian) == words
+    assert readout.quad_shape(jacobian, 1000) == words
 
 
 @pytest.mark.parametrize("fraction, words", [(0, "0 %"), (0.5, "50 %"), (0.0123, "1.2 %"), (1.234e-5, "0.0012 %"), (1e-7, "1e-05 %")])

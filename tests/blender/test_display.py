@@ -20,9 +20,9 @@ def test_what_is_shown(world):
     assert display.mode == "SHADED" and not preview.show_wire
     for mode, name in (("PATCHES", "patch_color"), ("ERROR", "error_color"), ("STRETCH", "stretch_color")):
         display.mode = mode
-        assert colors_of(preview) == name and preview.show_wire
-    display.edges = False
-    assert not preview.show_wire
+        assert colors_of(preview) == name and not preview.show_wire
+    assert bpy.ops.hybrid_mesh.toggle_quads() == {"FINISHED"}
+    assert display.mode == "STRETCH" and preview.show_wire
     # A patch has one colour, and there are several.
     mesh = levels[1].data
     patch, color = (module("bridge.meshes").get_attribute(mesh, name) for name in ("patch", "patch_color"))

@@ -12,7 +12,7 @@ from ..levels import made
 from . import coloring, properties
 
 _TITLES = {"PATCHES": "Patches: a colour a quad of the base", "STRETCH": "Stretch", "ERROR": "Distance to the source"}
-_SIZE, _LINE, _LEFT, _BOTTOM = 12, 18, 60, 30  # pixels at a scale of 1
+_SIZE, _LINE, _LEFT, _BOTTOM = 12, 18, 60, 60  # pixels at a scale of 1; below is the panel of the last operation
 _handle = None
 
 

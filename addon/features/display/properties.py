@@ -23,7 +23,7 @@ class HybridMeshDisplay(bpy.types.PropertyGroup):
         name="Show", description="What is seen of hybrid meshes", items=MODES, default="QUADS", update=lambda self, context: show_all(context), options=set()
     )
     edges: BoolProperty(
-        name="Edges", description="Draw the edges of the quads", default=True, update=lambda self, context: show_all(context), options=set()
+        name="Edges", description="Draw the edges of the quads over colours, too", default=False, update=lambda self, context: show_all(context), options=set()
     )
     legend: BoolProperty(name="Legend", description="Say in the view what the colours mean", default=True, update=lambda self, context: view.redraw(context), options=set())
 

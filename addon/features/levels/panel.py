@@ -60,10 +60,11 @@ class HYBRID_MESH_PT_levels(bpy.types.Panel):
         """What is to be said of the level that is shown."""
         name, finest = level.hybrid_mesh.level, level == made.finest_level(collection)
         column = layout.box().column(align=True)
-        column.label(text=f"{name}: {len(level.data.polygons):,} faces, {len(level.data.vertices):,} vertices", icon="MESH_GRID")
+        column.label(text=f"{name}: {len(level.data.polygons):,} faces", icon="MESH_GRID")
+        column.label(text=f"{len(level.data.vertices):,} vertices")
         figures = readout.figures_of(properties.report_of(collection), name, finest)
         for line in readout.lines(figures, coloring.diagonal_of(collection), lambda length: units.length_text(context.scene, length)):
-            column.label(text=line)
+            draw_wrapped(context, column, line)
 
     def _stream(self, layout, collection):
         if not streams.has_stream(collection):
