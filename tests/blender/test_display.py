@@ -69,13 +69,13 @@ def test_the_figures_are_those_of_what_is_shown(world):
 
 def test_settings_that_are_off_are_automatic(world):
     settings = bpy.context.scene.hybrid_mesh
-    assert settings.auto_levels and settings.auto_error and not settings.auto_vertices
-    settings.auto_levels = False
+    assert settings.use_vertices and not settings.use_error and not settings.use_levels
+    settings.use_levels = True
     assert settings.levels == 3
     settings.levels = 5
-    settings.auto_levels = False  # it is on already
+    settings.use_levels = True  # it is on already
     assert settings.levels == 5
-    settings.auto_levels = settings.auto_vertices = True
+    settings.use_levels = settings.use_vertices = False
     assert settings.levels == -1 and settings.vertices == 0
 
 

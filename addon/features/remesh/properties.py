@@ -86,15 +86,16 @@ def _density_names(properties, context, text):
 OFF = {"vertices": (0, 20000), "error": (0.0, 0.001), "levels": (-1, 3), "drop_components": (0.0, 0.001), "remove_noise": (0.0, 0.01), "threads": (0, 4)}
 
 
-def _automatic(name, description):
-    """A property that says whether a setting is off, and switches it."""
+def _switch(name, description):
+    """A property that says whether a setting is on, and switches it. description: what is where it is off."""
     off, on = OFF[name]
 
     def switch(self, value):
-        if value != (getattr(self, name) == off):
-            setattr(self, name, off if value else on)
+        if value != (getattr(self, name) != off):
+            setattr(self, name, on if value else off)
 
-    return BoolProperty(name="Auto", description=description, get=lambda self: getattr(self, name) == off, set=switch, options={"SKIP_SAVE"})
+    text = f"Whether this is given; else {description}"
+    return BoolProperty(name="Given", description=text, get=lambda self: getattr(self, name) != off, set=switch, options={"SKIP_SAVE"})
 
 
 class RemeshProperties:
@@ -163,12 +164,12 @@ SETTING_NAMES = tuple(RemeshProperties.__annotations__)
 class RemeshSwitches:
     """Mix-in beside RemeshProperties: what is shown in the place of values that mean "off". None of them is a setting."""
 
-    auto_vertices: _automatic("vertices", "As many vertices as the source has")
-    auto_error: _automatic("error", "No bound on the distance")
-    auto_levels: _automatic("levels", "As many levels as are needed")
-    auto_drop_components: _automatic("drop_components", "Keep all components")
-    auto_remove_noise: _automatic("remove_noise", "Keep all handles and tunnels")
-    auto_threads: _automatic("threads", "All cores")
+    use_vertices: _switch("vertices", "as many vertices as the source has")
+    use_error: _switch("error", "there is no bound on the distance")
+    use_levels: _switch("levels", "as many levels as are needed")
+    use_drop_components: _switch("drop_components", "all components are kept")
+    use_remove_noise: _switch("remove_noise", "all handles and tunnels are kept")
+    use_threads: _switch("threads", "all cores")
 
 
 class HybridMeshScene(RemeshSwitches, RemeshProperties, bpy.types.PropertyGroup):
@@ -256,11 +257,13 @@ def _column(layout):
 
 
 def _draw_switched(column, properties, name):
-    """A setting with its switch: *Auto* in the place of a value that means so."""
+    """A setting with its switch; where it is off, *Auto* in the place of the value that means so."""
     row = column.row(align=True, heading=properties.bl_rna.properties[name].name)
-    row.prop(properties, f"auto_{name}", text="Auto" if getattr(properties, f"auto_{name}") else "")
-    if not getattr(properties, f"auto_{name}"):
+    if getattr(properties, f"use_{name}"):
+        row.prop(properties, f"use_{name}", text="")
         row.prop(properties, name, text="")
+    else:
+        row.prop(properties, f"use_{name}", text="Auto")
 
 
 def _draw_base(column, properties):
