@@ -97,7 +97,7 @@ class NativeJobOperator(bpy.types.Operator):
         """Blender ends the operator: another file is loaded, or the window is closed."""
         if self._run is not None:
             self._run.cancel()
-        self._leave(context)
+        self._leave(context, ending=True)
 
     def _prepare(self, context):
         try:
@@ -146,12 +146,13 @@ class NativeJobOperator(bpy.types.Operator):
             context.window_manager.progress_update(round(100 * progress))  # at the pointer
             view.redraw(context)
 
-    def _leave(self, context):
+    def _leave(self, context, ending=False):
         _runs.discard(self._run)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
-            context.window_manager.progress_end()
-            view.redraw(context)
+            if not ending:  # What is in the window may be gone.
+                context.window_manager.progress_end()
+                view.redraw(context)
             self._timer = None
             if context.workspace:
                 context.workspace.status_text_set(None)

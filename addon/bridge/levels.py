@@ -102,6 +102,9 @@ def take_over(built, collection, preview, old):
         bpy.data.objects.remove(built.preview)
         bpy.data.meshes.remove(mesh)
     set_level(preview, built.level_names.index(shown) if shown in built.level_names else len(chosen) - 1)
+    for scene in bpy.data.scenes:  # Blender 5.0 crashes where it removes a linked collection whose objects have just gone.
+        if built.collection in scene.collection.children.values():
+            scene.collection.children.unlink(built.collection)
     bpy.data.collections.remove(built.collection)
     return Built(collection, built.level_names, chosen, preview, [], built.matrix, built.warning)
 
