@@ -77,57 +77,41 @@ def take_over(built, collection, preview, old):
     of the same name as before.
     """
     shown = next((name for name, obj in old.items() if preview is not None and obj == shown_object(preview)), None)
-    chosen = []
+    chosen, unused, names = [], [], []  # names: (data-block, the name that it takes over)
     for name, made in zip(built.level_names, built.levels, strict=True):
         obj = old.pop(name, None)
         if obj is None:
             collection.objects.link(made)
-            built.collection.objects.unlink(made)
             obj = made
         else:
-            _exchange_mesh(obj, made.data)
-            bpy.data.objects.remove(made)
+            before, obj.data = obj.data, made.data
+            unused.append(made)
+            if not before.users:
+                names.append((obj.data, before.name))
+                unused.append(before)
         chosen.append(obj)
     for obj in old.values():
-        mesh = obj.data
-        bpy.data.objects.remove(obj)
-        if not mesh.users:
-            bpy.data.meshes.remove(mesh)
+        unused += [obj] if obj.data.users > 1 else [obj, obj.data]
     if preview is None:
         preview = built.preview
         collection.objects.link(preview)
+        modifier = preview.modifiers[PREVIEW_MODIFIER]
     else:
-        _switch_again(preview, chosen, built.preview)
-        mesh = built.preview.data
-        bpy.data.objects.remove(built.preview)
-        bpy.data.meshes.remove(mesh)
+        modifier = preview.modifiers.get(PREVIEW_MODIFIER) or preview.modifiers.new(PREVIEW_MODIFIER, "NODES")
+        unused += [built.preview, built.preview.data]
+    before, temporary = modifier.node_group, built.preview.modifiers[PREVIEW_MODIFIER].node_group
+    modifier.node_group = _level_switch(temporary.name, chosen)
+    if before is not None and not before.users:
+        unused.append(before)
+    if before != temporary:
+        unused.append(temporary)
+    names.append((modifier.node_group, temporary.name if before is None else before.name))
     set_level(preview, built.level_names.index(shown) if shown in built.level_names else len(chosen) - 1)
-    for scene in bpy.data.scenes:  # Blender 5.0 crashes where it removes a linked collection whose objects have just gone.
-        if built.collection in scene.collection.children.values():
-            scene.collection.children.unlink(built.collection)
-    bpy.data.collections.remove(built.collection)
+    # All at once: Blender 5.0 crashes where they go one after the other.
+    bpy.data.batch_remove([*unused, built.collection])
+    for block, name in names:
+        block.name = name
     return Built(collection, built.level_names, chosen, preview, [], built.matrix, built.warning)
-
-
-def _exchange_mesh(obj, mesh):
-    before, name = obj.data, obj.data.name
-    obj.data = mesh
-    if not before.users:
-        bpy.data.meshes.remove(before)
-        mesh.name = name
-
-
-def _switch_again(preview, levels, other):
-    """Gives a preview a switch between objects in the place of the one that it has; that of the other preview goes."""
-    modifier = preview.modifiers.get(PREVIEW_MODIFIER) or preview.modifiers.new(PREVIEW_MODIFIER, "NODES")
-    before, unused = modifier.node_group, other.modifiers[PREVIEW_MODIFIER].node_group
-    modifier.node_group = _level_switch(unused.name, levels)
-    other.modifiers.clear()
-    name = unused.name if before is None else before.name
-    for group in {before, unused} - {None}:
-        if not group.users:
-            bpy.data.node_groups.remove(group)
-    modifier.node_group.name = name
 
 
 def add_figures(mesh, arrays):

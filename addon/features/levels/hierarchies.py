@@ -30,16 +30,20 @@ def take_over(built, collection):
     made, old = built.collection.hybrid_mesh, collection.hybrid_mesh
     old.report, old.operations, old.token = made.report, made.operations, made.token
     old.matrix = [value for column in made.matrix.transposed() for value in column]
-    if made.plan is not None and old.plan is not None:
-        old.plan.from_string(made.plan.as_string())
-        bpy.data.texts.remove(made.plan)
-    elif made.plan is not None:
-        old.plan = made.plan
-    before = {obj.hybrid_mesh.level: obj for obj in collection.objects if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == collection}
-    built = levels.take_over(built, collection, old.preview, before)
-    old.preview = built.preview
+    plan = made.plan
+    if plan is not None and old.plan is not None:
+        old.plan.from_string(plan.as_string())
+    elif plan is not None:
+        old.plan, plan = plan, None
+    # What goes points at nothing that stays, and nothing at what goes.
+    made.plan = made.preview = made.source = None
     for obj in (*built.levels, built.preview):
         obj.hybrid_mesh.hierarchy = collection
+    before = {obj.hybrid_mesh.level: obj for obj in collection.objects if properties.is_level(obj) and obj.hybrid_mesh.hierarchy == collection}
+    built = levels.take_over(built, collection, old.preview, before)
+    if plan is not None:
+        bpy.data.texts.remove(plan)
+    old.preview = built.preview
     levels.show_preview_only(built)
     return built
 
