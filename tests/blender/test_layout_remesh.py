@@ -163,6 +163,22 @@ def test_a_region_becomes_an_operation(world, region):
     assert not any(obj.visible_get() for obj in made)
 
 
+def test_a_region_is_one_undo_step(world, region):
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    hierarchy = region.level.hybrid_mesh.hierarchy
+    bpy.ops.ed.undo_push(message="before")
+    before = {obj.name: len(obj.data.vertices) for obj in hierarchy.objects}, plan_of(region.scan), hierarchy.hybrid_mesh.token, len(bpy.data.meshes)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    scan = bpy.data.objects["scan"]
+    hierarchy, levels, preview = world.hierarchy(scan)
+    assert before == ({obj.name: len(obj.data.vertices) for obj in hierarchy.objects}, plan_of(scan), hierarchy.hybrid_mesh.token, len(bpy.data.meshes))
+    assert module("features.levels.kept").find(hierarchy).hierarchy.operation_count == 0
+    assert module("bridge.levels").shown_object(preview) == levels[-1]
+
+
 def test_a_region_is_taken_in_edit_mode(world, region):
     region.draw([region.line()])
     bpy.ops.object.mode_set(mode="OBJECT")
