@@ -18,6 +18,7 @@ _MOST_PULLED = 0.5  # of the faces: where more lie across a UV map's seams, it s
 # What Blender and a level have of their own.
 _OWN = {
     "position", "material_index", "sharp_face", "sharp_edge", "crease_edge", "custom_normal", meshes.STRETCH, meshes.STRETCH_COLOR, meshes.ANISOTROPY,
+    meshes.PATCH_COLOR, meshes.ERROR_COLOR,
     meshes.PATCH, meshes.IRREGULAR, meshes.PATCH_UV, meshes.ROOT, meshes.PATH, meshes.OPENED, meshes.OPENED_LEVEL,
 }  # fmt: skip
 

@@ -154,6 +154,8 @@ def test_a_region_becomes_an_operation(world, region):
     kept_levels = [bpy.data.objects[name] for name in names]
     assert all(obj.hybrid_mesh.hierarchy == preview.hybrid_mesh.hierarchy and obj.data.name == obj.name for obj in kept_levels)
     assert len(level_of(preview, "M1").data.polygons) == faces and module("bridge.levels").shown_object(preview) == region.levels[-1]
+    rows = module("features.levels.panel").level_rows(preview.hybrid_mesh.hierarchy)
+    assert [row[0] for row in rows][:3] == ["N0", "M1", "N1"]
     plan = json.loads(plan_of(preview))
     assert [(one["level"], one["quads"], one["buffer_rings"]) for one in plan["operations"]] == [(1, region.addresses, 2)]
     made = [obj for obj in preview.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.role == "LEVEL"]

@@ -8,8 +8,6 @@ from ...core.colors import error_colors, patch_colors
 from ..levels import made
 from ..levels import properties as hierarchy_properties
 
-PATCH_COLOR, ERROR_COLOR = "patch_color", "error_color"
-
 
 def level_objects(collection):
     found = (obj for obj in collection.objects if hierarchy_properties.is_level(obj) and obj.hybrid_mesh.hierarchy == collection)
@@ -25,10 +23,10 @@ def diagonal_of(collection):
 def use_colors(context, collection, name):
     """Has the levels of a hierarchy shown in the colours of that name, which are made where they are missing. Raises ValueError with a line for people."""
     levels = level_objects(collection)
-    if name == ERROR_COLOR:
+    if name == meshes.ERROR_COLOR:
         _add_errors(context, collection, levels)
     for obj in levels:
-        if name == PATCH_COLOR and name not in obj.data.attributes:
+        if name == meshes.PATCH_COLOR and name not in obj.data.attributes:
             _add_patches(obj.data)
         index = obj.data.color_attributes.find(name)
         if index >= 0:
@@ -40,7 +38,7 @@ def _add_patches(mesh):
     patches = meshes.get_attribute(mesh, meshes.PATCH)
     if patches is not None:
         sides = meshes.values_of(mesh.polygons, "loop_total", 1, numpy.int32)
-        meshes.set_attribute(mesh, PATCH_COLOR, "BYTE_COLOR", "CORNER", numpy.repeat(patch_colors(patches), sides, axis=0))
+        meshes.set_attribute(mesh, meshes.PATCH_COLOR, "BYTE_COLOR", "CORNER", numpy.repeat(patch_colors(patches), sides, axis=0))
 
 
 def _add_errors(context, collection, levels):
@@ -51,9 +49,9 @@ def _add_errors(context, collection, levels):
         mesh = obj.data
         points = meshes.in_world(meshes.values_of(mesh.vertices, "co", 3), numpy.array(obj.matrix_world, dtype=numpy.float64))
         colors = error_colors(find(points) / (diagonal or 1.0))
-        if ERROR_COLOR in mesh.attributes:
-            mesh.attributes.remove(mesh.attributes[ERROR_COLOR])
-        meshes.set_attribute(mesh, ERROR_COLOR, "BYTE_COLOR", "POINT", colors)
+        if meshes.ERROR_COLOR in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[meshes.ERROR_COLOR])
+        meshes.set_attribute(mesh, meshes.ERROR_COLOR, "BYTE_COLOR", "POINT", colors)
 
 
 def _distances_to_source(context, collection):

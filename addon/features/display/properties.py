@@ -15,7 +15,7 @@ MODES = (
     ("STRETCH", "Stretch", "How much less densely than on average faces sample the surface"),
     ("ERROR", "Error", "How far vertices are from what was remeshed, as both are now"),
 )
-_COLORS = {"PATCHES": coloring.PATCH_COLOR, "STRETCH": meshes.STRETCH_COLOR, "ERROR": coloring.ERROR_COLOR}
+_COLORS = {"PATCHES": meshes.PATCH_COLOR, "STRETCH": meshes.STRETCH_COLOR, "ERROR": meshes.ERROR_COLOR}
 
 
 class HybridMeshDisplay(bpy.types.PropertyGroup):
