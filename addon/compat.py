@@ -3,6 +3,7 @@
 
 import math
 
+import blf
 import bpy
 import numpy
 
@@ -99,6 +100,28 @@ def set_group_input(modifier, name, value):
 def draw_group_input(layout, modifier, name):
     holder, key = _group_input(modifier, name)
     layout.prop(holder, f'["{key}"]' if holder == modifier else key, text=name)
+
+
+def flat_shader():
+    """The shader that draws things of one colour."""
+    import gpu  # It is not there without a window.
+
+    return gpu.shader.from_builtin("UNIFORM_COLOR" if _HAS_NODE_INTERFACE else "2D_UNIFORM_COLOR")
+
+
+def font_size(font, size):
+    if _HAS_NODE_INTERFACE:
+        blf.size(font, size)
+    else:
+        blf.size(font, size, 72)
+
+
+def draw_progress(layout, factor, text):
+    """A bar, or in words where there are no bars."""
+    if hasattr(layout, "progress"):
+        layout.progress(factor=factor, text=text)
+    else:
+        layout.label(text=text)
 
 
 def grease_pencils():

@@ -2,11 +2,14 @@
 """Long work in native threads: one base operator, and the places where no thread may outlive Blender's data."""
 
 import atexit
+import time
 import traceback
 
 import bpy
 
+from .bridge import view
 from .bridge.names import readable
+from .core import readout
 from .core.native import NativeMissing, expected, explain, native
 from .core.tasks import TaskRun
 
@@ -30,6 +33,7 @@ class NativeJobOperator(bpy.types.Operator):
     _run = None
     _timer = None
     _shown = ""
+    _began = 0.0
 
     def prepare(self, context):
         raise NotImplementedError
@@ -62,6 +66,8 @@ class NativeJobOperator(bpy.types.Operator):
             return {"CANCELLED"}
         self._run = run
         _runs.add(run)
+        self._began = time.monotonic()
+        context.window_manager.progress_begin(0, 100)
         self._timer = context.window_manager.event_timer_add(POLL_SECONDS, window=context.window)
         context.window_manager.modal_handler_add(self)
         run.step()
@@ -91,7 +97,7 @@ class NativeJobOperator(bpy.types.Operator):
         """Blender ends the operator: another file is loaded, or the window is closed."""
         if self._run is not None:
             self._run.cancel()
-        self._leave(context)
+        self._leave(context, ending=True)
 
     def _prepare(self, context):
         try:
@@ -127,16 +133,26 @@ class NativeJobOperator(bpy.types.Operator):
             return False
 
     def _show(self, context):
-        progress = f"   {self._run.progress:.0%}" if self._run.progress > 0 else ""  # Not all work knows how far it is.
-        text = f"{self._run.status}{progress}   (Esc cancels)"
+        global _progress
+        progress = self._run.progress
+        text = self._run.status
+        if progress > 0:  # Not all work knows how far it is.
+            left = readout.time_left(progress, time.monotonic() - self._began)
+            text = "   ".join(filter(None, (text, f"{progress:.0%}", left)))
         if text != self._shown:  # Every change is a redraw.
             self._shown = text
-            context.workspace.status_text_set(text)
+            _progress = (progress, text)
+            context.workspace.status_text_set(f"{text}   (Esc cancels)")
+            context.window_manager.progress_update(round(100 * progress))  # at the pointer
+            view.redraw(context)
 
-    def _leave(self, context):
+    def _leave(self, context, ending=False):
         _runs.discard(self._run)
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
+            if not ending:  # What is in the window may be gone.
+                context.window_manager.progress_end()
+                view.redraw(context)
             self._timer = None
             if context.workspace:
                 context.workspace.status_text_set(None)
@@ -149,6 +165,7 @@ def _line_of(error):
     return explain(error)
 
 
+_progress = (0.0, "")
 _runs = set()
 _ending = []  # cancelled ones whose native work has not yet looked up
 
@@ -173,6 +190,11 @@ def _let_go():
 def running():
     """Whether a modal job runs in a window."""
     return bool(_runs)
+
+
+def progress():
+    """(how far the work in a window is, from 0 to 1, what is said of it)."""
+    return _progress
 
 
 def end_all():

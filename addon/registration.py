@@ -7,6 +7,9 @@ import bpy
 
 from . import compat, jobs
 from .features.baking import operators as baking_operators
+from .features.display import legend as display_legend
+from .features.display import operators as display_operators
+from .features.display import properties as display_properties
 from .features.files import operators as file_operators
 from .features.layouts import operators as layout_operators
 from .features.layouts import panel as layout_panel
@@ -37,6 +40,9 @@ CLASSES = (
     topology_properties.HybridMeshLoop,
     topology_properties.HybridMeshTopology,
     remesh_properties.HybridMeshScene,
+    display_properties.HybridMeshDisplay,
+    display_operators.HYBRID_MESH_OT_toggle_quads,
+    display_operators.HYBRID_MESH_OT_step_level,
     remesh_operators.HYBRID_MESH_OT_remesh,
     remesh_operators.HYBRID_MESH_OT_preset,
     level_operators.HYBRID_MESH_OT_show_level,
@@ -64,6 +70,7 @@ CLASSES = (
     remesh_panel.HYBRID_MESH_PT_remesh,
     remesh_panel.HYBRID_MESH_PT_advanced,
     level_panel.HYBRID_MESH_PT_levels,
+    level_panel.HYBRID_MESH_PT_figures,
     layout_panel.HYBRID_MESH_PT_layout,
     topology_panel.HYBRID_MESH_PT_topology,
 )
@@ -74,6 +81,7 @@ PROPERTIES = (
     *layout_properties.PROPERTIES,
     *topology_properties.PROPERTIES,
     *remesh_properties.PROPERTIES,
+    *display_properties.PROPERTIES,
 )
 
 _registered = contextlib.ExitStack()  # how to undo it all, the last first
@@ -90,10 +98,9 @@ def register():
         for menu, entry in file_operators.MENUS:
             menu.append(entry)
             undo.callback(menu.remove, entry)
-        jobs.register()
-        undo.callback(jobs.unregister)
-        stored_levels.register()
-        undo.callback(stored_levels.unregister)
+        for part in (jobs, stored_levels, display_operators, display_legend):
+            part.register()
+            undo.callback(part.unregister)
         undo.callback(compat.unregister_command_line, compat.register_command_line("hybrid_mesh", _run_command_line))
         _registered.enter_context(undo.pop_all())
 

@@ -12,6 +12,7 @@ import argparse
 import json
 import os
 import sys
+import types
 
 import bpy
 import numpy
@@ -176,6 +177,8 @@ class Steps:
         bpy.ops.hybrid_mesh.draw_layout()
         layout = layouts.layout_of(obj, bpy.context.scene)
         strokes.write(layout, layout.data.layers.active, bpy.context.scene.frame_current, self.lines)
+        # The objects are changed in place.
+        self.before = {name: types.SimpleNamespace(data=obj.data.copy()) for name, obj in self.before.items()}
         assert bpy.ops.hybrid_mesh.repatch_region(buffer_rings=1) == {"FINISHED"}
         return bpy.context.object.hybrid_mesh.hierarchy
 

@@ -83,9 +83,25 @@ def closest_weights(points, triangles, inside=True):
     weights[determinant <= 0] = 1 / 3
     if not inside:
         return weights
-    # Clamping and rescaling is not the exact nearest point outside, but never leaves the triangle.
-    weights = numpy.clip(weights, 0, None)
-    return weights / weights.sum(1, keepdims=True)
+    beyond = numpy.nonzero((weights < 0).any(1))[0]
+    weights[beyond] = _on_edges(points[beyond], triangles[beyond])
+    return weights
+
+
+def _on_edges(points, triangles):
+    """Barycentric weights of the points of triangles' edges that are nearest to points."""
+    here = numpy.arange(len(points))
+    best, least = numpy.zeros((len(points), 3)), numpy.full(len(points), numpy.inf)
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        start, along = triangles[:, first], triangles[:, second] - triangles[:, first]
+        square = (along * along).sum(1)
+        share = numpy.clip(((points - start) * along).sum(1) / numpy.where(square > 0, square, 1), 0, 1)
+        distance = numpy.linalg.norm(points - start - share[:, None] * along, axis=1)
+        weights = numpy.zeros((len(points), 3))
+        weights[here, first], weights[here, second] = 1 - share, share
+        nearer = distance < least
+        best[nearer], least[nearer] = weights[nearer], distance[nearer]
+    return best
 
 
 def triangle_neighbours(triangles):
@@ -103,14 +119,15 @@ def triangle_neighbours(triangles):
 
 
 def walk(points, triangle, mesh_points, triangles, neighbours, steps=32):
-    """From a triangle near each point to the one that the point lies over: each step crosses the edge that the point is farthest beyond."""
+    """From a triangle near each point to the one that the point lies over: each step crosses the edge that the point is farthest beyond, of those that lead on."""
     triangle = numpy.array(triangle)
     moving = numpy.arange(len(points))
     came_from = numpy.full(len(points), -1)
     for _ in range(steps):
         weights = closest_weights(points[moving], mesh_points[triangles[triangle[moving]]], inside=False)
-        side = weights.argmin(1)
-        ahead = neighbours[triangle[moving], side]
+        ways = neighbours[triangle[moving]]
+        side = numpy.where((ways >= 0) & (ways != came_from[moving][:, None]), weights, 0).argmin(1)
+        ahead = ways[numpy.arange(len(moving)), side]
         go = (weights[numpy.arange(len(moving)), side] < -1e-9) & (ahead >= 0) & (ahead != came_from[moving])
         moving, ahead = moving[go], ahead[go]
         if not len(moving):
@@ -133,25 +150,18 @@ def matching_faces(points, faces, other_points, other_faces):
     return first[names[: len(faces)]]
 
 
-def surface_islands(corner_vertices, corner_values):
-    """The island of each triangle: triangles hang together where they share a vertex with the same value (as of a UV map).
-
-    corner_vertices (3 n,), corner_values (3 n, k).
-    """
-    values = numpy.unique(corner_values, axis=0, return_inverse=True)[1].ravel()
-    pairs = numpy.stack([numpy.asarray(corner_vertices, dtype=numpy.int64), values], axis=1)
-    corners = numpy.unique(pairs, axis=0, return_inverse=True)[1].reshape(-1, 3)
-    label = numpy.arange(corners.max(initial=-1) + 1)
+def connected(neighbours):
+    """The part of each triangle, by number: triangles hang together where they are neighbours, (n, 3) with -1 for none, both ways."""
+    label = numpy.arange(len(neighbours))
+    across = numpy.where(neighbours >= 0, neighbours, label[:, None])
     while True:
-        least = label[corners].min(1)
-        lower = label.copy()
-        numpy.minimum.at(lower, corners.ravel(), numpy.repeat(least, 3))
+        lower = numpy.minimum(label, label[across].min(1, initial=len(label)))
+        numpy.minimum.at(lower, label, lower.copy())
         # Labels of labels: the number of rounds grows with the logarithm of the distance.
         while not numpy.array_equal(lower, lower[lower]):
             lower = lower[lower]
-        numpy.minimum.at(lower, label, lower.copy())
         if numpy.array_equal(lower, label):
-            return label[corners[:, 0]]
+            return label
         label = lower
 
 

@@ -25,6 +25,7 @@ class Built:
     preview: bpy.types.Object
     blocks: list  # all data-blocks that were made, in order
     matrix: numpy.ndarray  # object to world, when it was built
+    warning: str = ""  # what could not be carried over, for people
 
 
 def build(name, levels, matrix, scene, place=None, source=None, carry=None):
@@ -69,6 +70,50 @@ def remove(built):
     _remove(built.blocks)
 
 
+def take_over(built, collection, preview, old):
+    """Has the objects of a hierarchy show what build() has made, which is taken apart; returns Built of these objects.
+
+    old: level name: object. Objects of levels that there are no more go; those of new ones come into the collection. The preview (None: it is gone) shows the level
+    of the same name as before.
+    """
+    shown = next((name for name, obj in old.items() if preview is not None and obj == shown_object(preview)), None)
+    chosen, unused, names = [], [], []  # names: (data-block, the name that it takes over)
+    for name, made in zip(built.level_names, built.levels, strict=True):
+        obj = old.pop(name, None)
+        if obj is None:
+            collection.objects.link(made)
+            obj = made
+        else:
+            before, obj.data = obj.data, made.data
+            unused.append(made)
+            if not before.users:
+                names.append((obj.data, before.name))
+                unused.append(before)
+        chosen.append(obj)
+    for obj in old.values():
+        unused += [obj] if obj.data.users > 1 else [obj, obj.data]
+    if preview is None:
+        preview = built.preview
+        collection.objects.link(preview)
+        modifier = preview.modifiers[PREVIEW_MODIFIER]
+    else:
+        modifier = preview.modifiers.get(PREVIEW_MODIFIER) or preview.modifiers.new(PREVIEW_MODIFIER, "NODES")
+        unused += [built.preview, built.preview.data]
+    before, temporary = modifier.node_group, built.preview.modifiers[PREVIEW_MODIFIER].node_group
+    modifier.node_group = _level_switch(temporary.name, chosen)
+    if before is not None and not before.users:
+        unused.append(before)
+    if before != temporary:
+        unused.append(temporary)
+    names.append((modifier.node_group, temporary.name if before is None else before.name))
+    set_level(preview, built.level_names.index(shown) if shown in built.level_names else len(chosen) - 1)
+    # All at once: Blender 5.0 crashes where they go one after the other.
+    bpy.data.batch_remove([*unused, built.collection])
+    for block, name in names:
+        block.name = name
+    return Built(collection, built.level_names, chosen, preview, [], built.matrix, built.warning)
+
+
 def add_figures(mesh, arrays):
     """What a level says of its faces as attributes: stretch (also as the active colours), anisotropy, patch, irregular faces, what opened there, addresses."""
     stretch = arrays.get("stretch")
@@ -110,8 +155,17 @@ def shown_object(preview):
     modifier = preview.modifiers.get(PREVIEW_MODIFIER)
     if modifier is None or modifier.node_group is None:
         return None
-    objects = [node.inputs["Object"].default_value for node in modifier.node_group.nodes if node.bl_idname == _OBJECT_NODE]
+    objects = _switched(modifier)
     return objects[min(max(level_of(preview), 0), len(objects) - 1)] if objects else None
+
+
+def count(preview):
+    """How many levels a preview switches between."""
+    return len(_switched(preview.modifiers[PREVIEW_MODIFIER]))
+
+
+def _switched(modifier):
+    return [node.inputs["Object"].default_value for node in modifier.node_group.nodes if node.bl_idname == _OBJECT_NODE]
 
 
 def draw_level(layout, preview):
@@ -127,12 +181,15 @@ def _preview(name, levels, collection, place, made):
     made.append(mesh)
     for material in levels[-1].data.materials:
         mesh.materials.append(material)
-    group = _level_switch(with_suffix(name, " levels"), levels)
-    made.append(group)
+    switch = _level_switch(with_suffix(name, " levels"), levels)
+    made.append(switch)
     preview = _new_object(title, mesh, collection, place)
     made.append(preview)
+    # What a modifier above the preview's own looks groups up in; the weights come with the level's geometry, by the groups' numbers.
+    for group in levels[-1].vertex_groups:
+        preview.vertex_groups.new(name=group.name)
     modifier = preview.modifiers.new(PREVIEW_MODIFIER, "NODES")
-    modifier.node_group = group
+    modifier.node_group = switch
     set_level(preview, len(levels) - 1)
     return preview
 

@@ -14,6 +14,7 @@ from .arrays import MeshArrays, mirrors, reversed_corners, reversed_edges, trans
 from .objects import key_of
 
 STRETCH, STRETCH_COLOR, ANISOTROPY, PATCH, IRREGULAR, PATCH_UV = "stretch", "stretch_color", "anisotropy", "patch", "irregular", "patches"
+PATCH_COLOR, ERROR_COLOR = "patch_color", "error_color"  # made when they are to be shown
 OPENED, OPENED_LEVEL = "opened", "opened_level"  # the event of the topology that opened where a face was put in, 1 for the plan's first; 0 for none
 ROOT, PATH = "root", "path"  # the address of a face's quad: its root quad's number, and 1 followed by the children in base 4
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a surface carries (UV maps, colours, vertex groups, attributes, materials), read of the source and brought over to a level."""
 
+import functools
 from dataclasses import dataclass, field
 
 import numpy
@@ -8,13 +9,16 @@ from mathutils.bvhtree import BVHTree
 
 from .. import compat
 from . import kept_places, meshes
-from .arrays import closest_weights, majority, matching_faces, surface_islands, triangle_neighbours, walk
+from .arrays import closest_weights, majority, matching_faces, triangle_neighbours, walk
+from .seams import SeamedMap
 
 _FLOATING = {"FLOAT", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
 _WHOLE = {"INT", "BOOLEAN"}
+_MOST_PULLED = 0.5  # of the faces: where more lie across a UV map's seams, it shows more of them than of itself
 # What Blender and a level have of their own.
 _OWN = {
     "position", "material_index", "sharp_face", "sharp_edge", "crease_edge", "custom_normal", meshes.STRETCH, meshes.STRETCH_COLOR, meshes.ANISOTROPY,
+    meshes.PATCH_COLOR, meshes.ERROR_COLOR,
     meshes.PATCH, meshes.IRREGULAR, meshes.PATCH_UV, meshes.ROOT, meshes.PATH, meshes.OPENED, meshes.OPENED_LEVEL,
 }  # fmt: skip
 
@@ -70,38 +74,72 @@ def set_group(obj, name, weights):
         group.add([int(vertex)], float(weights[vertex]), "REPLACE")
 
 
-def carrier(source, repaired):
-    """A function carry(obj, MeshDict) for levels.build.
+class Carrier:
+    """Carries what a source's surface has to levels, as levels.build() has it done: carrier(obj, MeshDict).
 
-    repaired: the mesh whose faces a MeshDict's source_face counts; repair moves no point, so its faces are found among the source's.
+    repaired: the mesh whose faces a MeshDict's source_face counts; repair moves no point, so its faces are found among the source's. Without it nothing but the
+    places of the vertices tells where they lie on the source: each takes the nearest triangle.
     """
-    faces = matching_faces(repaired[0], repaired[2].reshape(-1, 3), source.mesh.points, source.mesh.indices.reshape(-1, 3))
-    neighbours = triangle_neighbours(source.mesh.indices.reshape(-1, 3))
-    islands = _islands(source)
 
-    def carry(obj, arrays):
-        found = arrays.get("source_face")
-        if found is None or not len(faces):
+    def __init__(self, source, repaired=None):
+        self._source, self._triangles = source, source.mesh.indices.reshape(-1, 3)
+        self._faces = None if repaired is None else matching_faces(repaired[0], repaired[2].reshape(-1, 3), source.mesh.points, self._triangles)
+        self._called = 0
+        self._unserved = []  # numbers of the calls for levels on which the source's active UV map cannot serve
+
+    def __call__(self, obj, arrays):
+        self._called += 1
+        if self._faces is not None and (arrays.get("source_face") is None or not len(self._faces)):
             return
-        triangle = faces[numpy.clip(found, 0, len(faces) - 1)]
+        place = Places(self._source, arrays, self._places(arrays))
+        place.carry(obj)
+        self._carry_uvs(obj, place)
+        if self._faces is not None:
+            kept_places.keep(obj.data, place.corners, place.weights, len(self._source.mesh.points))
+
+    def _places(self, arrays):
+        points = numpy.asarray(arrays["points"])
+        if self._faces is None:
+            return self._nearest(points)
+        found = arrays["source_face"]
+        triangle = self._faces[numpy.clip(found, 0, len(self._faces) - 1)]
         triangle = numpy.where((found >= 0) & (triangle >= 0), triangle, 0)
         # The fit has moved the vertices a little since they were put on their triangles.
-        triangle = walk(numpy.asarray(arrays["points"]), triangle, source.mesh.points, source.mesh.indices.reshape(-1, 3), neighbours)
-        place = Places(source, arrays, triangle)
-        place.carry(obj, islands)
-        kept_places.keep(obj.data, place.corners, place.weights, len(source.mesh.points))
+        return walk(points, triangle, self._source.mesh.points, self._triangles, self._neighbours)
 
-    return carry
+    def _carry_uvs(self, obj, place):
+        mesh, carried = obj.data, self._source.carried
+        order = meshes.corner_order(place.offsets, self._source.matrix)
+        for name, uv_map in self._maps.items():
+            values, pulled = uv_map.from_places(place.points, place.triangle, place.weights, place.offsets, place.indices, self._nearest)
+            meshes.add_uv(mesh, name, values[order])
+            if name == carried.active_uv and name in mesh.uv_layers:
+                serves = (uv_map.has_area and pulled.mean() <= _MOST_PULLED) or meshes.PATCH_UV not in mesh.uv_layers
+                active = mesh.uv_layers[name if serves else meshes.PATCH_UV]
+                mesh.uv_layers.active, active.active_render = active, True
+                if not serves:
+                    self._unserved.append(self._called - 1)
 
+    def warning(self, level_names):
+        """A line for people where the source's UV map cannot serve; empty where there is nothing to say. level_names: of the levels in the order of the calls."""
+        if not self._unserved:
+            return ""
+        name = self._source.carried.active_uv
+        why = f"most faces lie across its seams on {', '.join(level_names[number] for number in self._unserved)}" if self._maps[name].has_area else "most of its faces have no area in it"
+        return f"the UV map {name!r} cannot serve: {why}; {meshes.PATCH_UV!r} is active there"
 
-def nearest_carrier(source):
-    """The same where nothing but the places of the vertices tells where they lie on the source: each takes the nearest one."""
-    find, islands = nearest_triangles(source.mesh), _islands(source)
+    @functools.cached_property
+    def _maps(self):
+        loops, mesh = self._source.triangle_loops, self._source.mesh
+        return {name: SeamedMap(mesh.points, self._triangles, uv[loops], self._neighbours) for name, uv in self._source.carried.uvs.items()}
 
-    def carry(obj, arrays):
-        Places(source, arrays, find(arrays["points"])).carry(obj, islands)
+    @functools.cached_property
+    def _neighbours(self):
+        return triangle_neighbours(self._triangles)
 
-    return carry
+    @functools.cached_property
+    def _nearest(self):
+        return nearest_triangles(self._source.mesh)
 
 
 def nearest_triangles(mesh):
@@ -110,8 +148,10 @@ def nearest_triangles(mesh):
     return lambda points: numpy.array([tree.find_nearest(point)[2] for point in numpy.asarray(points).tolist()], dtype=numpy.int64)
 
 
-def _islands(source):
-    return {name: surface_islands(source.mesh.indices, uv[source.triangle_loops].reshape(-1, 2)) for name, uv in source.carried.uvs.items()}
+def distances(mesh):
+    """A function that finds how far points are from triangle MeshArrays."""
+    tree = BVHTree.FromPolygons(mesh.points.tolist(), mesh.indices.reshape(-1, 3).tolist(), all_triangles=True)
+    return lambda points: numpy.array([tree.find_nearest(point)[3] for point in numpy.asarray(points).tolist()])
 
 
 class Places:
@@ -125,23 +165,18 @@ class Places:
         self.weights = closest_weights(self.points, self.mesh.points[self.corners])
         self.offsets, self.indices = numpy.asarray(arrays["offsets"]), numpy.asarray(arrays["indices"])
 
-    def carry(self, obj, islands):
+    def carry(self, obj):
+        """All but UV maps."""
         mesh = obj.data
         polygon = self.source.triangle_polygons[self.triangle]
         if self.carried.materials.max(initial=0) > 0:
             meshes.set_materials(mesh, self.by_face(self.carried.materials[polygon]))
-        for name, uv in self.carried.uvs.items():
-            values = self.by_corner(uv, islands[name])
-            meshes.add_uv(mesh, name, values[meshes.corner_order(self.offsets, self.source.matrix)])
-        if self.carried.active_uv in mesh.uv_layers:
-            mesh.uv_layers.active = mesh.uv_layers[self.carried.active_uv]
-            mesh.uv_layers[self.carried.active_uv].active_render = True
         active = mesh.color_attributes.active_color_name if mesh.color_attributes.active_color else ""
         for name, kind, domain, values in self.carried.attributes:
             if domain == "POINT":
                 meshes.set_attribute(mesh, name, kind, domain, self.by_vertex(values))
             elif domain == "CORNER":
-                corners = self.by_corner(values, None)
+                corners = self.by_corner(values)
                 meshes.set_attribute(mesh, name, kind, domain, corners[meshes.corner_order(self.offsets, self.source.matrix)])
             else:
                 meshes.set_attribute(mesh, name, kind, domain, self.by_face(values[polygon]))
@@ -153,31 +188,9 @@ class Places:
     def by_vertex(self, values):
         return numpy.einsum("vk,vk...->v...", self.weights, values[self.corners])
 
-    def by_corner(self, values, islands):
-        """Values of corners. Where a face lies across a seam all its corners take the side that most of them are on."""
+    def by_corner(self, values):
         loops = self.source.triangle_loops[self.triangle]
-        made = numpy.einsum("vk,vk...->v...", self.weights, values[loops])[self.indices]
-        if islands is None:
-            return made
-        counts = numpy.diff(self.offsets)
-        for count in numpy.unique(counts):
-            chosen = numpy.nonzero(counts == count)[0]
-            places = self.offsets[chosen][:, None] + numpy.arange(count)
-            vertices = self.indices[places]
-            sides = islands[self.triangle[vertices]]
-            main = numpy.take_along_axis(sides, majority(sides)[:, None], 1)
-            for corner in range(count):
-                across = numpy.nonzero(sides[:, corner] != main[:, 0])[0]
-                if len(across):
-                    # The nearest corner of the face that is on the right side lends its triangle.
-                    lender = numpy.take_along_axis(vertices[across], (sides[across] == main[across]).argmax(1)[:, None], 1)[:, 0]
-                    made[places[across, corner]] = self.extended(values, self.triangle[lender], self.points[vertices[across, corner]])
-        return made
-
-    def extended(self, values, triangle, points):
-        """Values of triangles at points beside them."""
-        weights = closest_weights(points, self.mesh.points[self.mesh.indices.reshape(-1, 3)[triangle]], inside=False)
-        return numpy.einsum("vk,vk...->v...", numpy.clip(weights, -3, 4), values[self.source.triangle_loops[triangle]])
+        return numpy.einsum("vk,vk...->v...", self.weights, values[loops])[self.indices]
 
     def by_face(self, values):
         """The value that most corners of each face have."""

@@ -23,16 +23,37 @@ def select_only(context, *chosen):
     context.view_layer.objects.active = chosen[-1]
 
 
+def views(context):
+    """The areas of the window that are 3D views."""
+    return [area for area in context.window.screen.areas if area.type == "VIEW_3D"] if context.window is not None else []
+
+
+def redraw(context):
+    for area in views(context):
+        area.tag_redraw()
+
+
+def shade(context, colors):
+    """Has the 3D views of the window show surfaces in colours (of solid shading: MATERIAL, VERTEX, ...); rendered views stay as they are where these are the material's."""
+    for area in views(context):
+        shading = area.spaces.active.shading
+        if colors != "MATERIAL":
+            shading.type = "SOLID"
+        if shading.type == "SOLID" and (colors != "MATERIAL" or shading.color_type == "VERTEX"):
+            shading.color_type = colors
+        area.tag_redraw()
+
+
 def look_at(context, surface, place, size):
     """Turns the 3D views of the window to a place, from outside the surface; returns how many there are."""
-    views = [area for area in context.window.screen.areas if area.type == "VIEW_3D"] if context.window is not None else []
+    areas = views(context)
     inverse = surface.matrix_world.inverted_safe()
     try:
         found, _, normal, _ = surface.evaluated_get(context.evaluated_depsgraph_get()).closest_point_on_mesh(inverse @ place)
     except RuntimeError:  # It has no faces any more.
         found = False
     outward = (inverse.to_3x3().transposed() @ normal).normalized() if found else None
-    for area in views:
+    for area in areas:
         view = area.spaces.active.region_3d
         if view.view_perspective == "CAMERA":
             view.view_perspective = "PERSP"
@@ -41,7 +62,7 @@ def look_at(context, surface, place, size):
             view.view_rotation = outward.to_track_quat("Z", "Y")
         view.view_location = place
         view.view_distance = 10 * size
-    return len(views)
+    return len(areas)
 
 
 @contextlib.contextmanager

@@ -127,11 +127,32 @@ class RemeshSettings:
 
 
 PRESETS = {
-    "draft": ("Draft", "A light uniform mesh for blocking and tests", RemeshSettings(vertices=5000)),
+    "draft": ("Draft", "A light mesh for blocking and tests", RemeshSettings(vertices=5000, effort="quick")),
     "standard": ("Standard", "A uniform mesh for sculpting and retouching", RemeshSettings(vertices=20000)),
-    "detailed": ("Detailed", "A uniform mesh that keeps the fine detail of a scan", RemeshSettings(vertices=80000)),
-    "adaptive": ("Adaptive", "Small quads only where the shape needs them", RemeshSettings(vertices=20000, refinement="adaptive")),
+    "game": ("Game", "Few vertices, where the shape needs them", RemeshSettings(vertices=8000, refinement="adaptive")),
+    "film": ("Film", "A dense, even mesh to be subdivided and displaced", RemeshSettings(vertices=80000, effort="thorough")),
+    "sculpt": ("Sculpt", "A coarse base with four levels above it, as Multires has them", RemeshSettings(vertices=50000, levels=4, semi_regular=True)),
+    "archive": ("Scan Archive", "As few vertices as keep to the scan within a bound that is not seen", RemeshSettings(vertices=0, error=5e-5, refinement="adaptive")),
+    "print": ("3D Print", "Fine, and without the specks and tunnels that scanners see", RemeshSettings(vertices=100000, drop_components=0.001, remove_noise=0.005)),
 }
+
+_WORDS = {
+    "vertices": lambda value: f"{value:,} vertices" if value else "as many vertices as the source at most",
+    "error": lambda value: f"error {value:g}",
+    "levels": lambda value: f"{value} levels",
+    "refinement": str,
+    "effort": lambda value: f"{value} effort",
+    "semi_regular": lambda value: "semi-regular",
+    "drop_components": lambda value: f"components below {value:.1%} dropped",
+    "remove_noise": lambda value: f"tunnels below {value:.1%} closed",
+}
+
+
+def preset_summary(name):
+    """What a preset sets, in words."""
+    settings, first = preset(name), RemeshSettings()
+    changed = [field.name for field in fields(RemeshSettings) if getattr(settings, field.name) != getattr(first, field.name)]
+    return ", ".join(_WORDS[field](getattr(settings, field)) for field in dict.fromkeys(["vertices", *changed]))
 
 
 def preset(name):

@@ -75,16 +75,18 @@ def test_faces_are_found_by_their_places():
     assert arrays.matching_faces(other, numpy.array([[0, 2, 3], [0, 1, 4]]), points, faces).tolist() == [1, -1]
 
 
-def test_islands_end_at_seams():
-    # A strip of six triangles; the value jumps after the third.
-    strip = numpy.array([[i, i + 1, i + 2] for i in range(6)])
-    values = numpy.array([[vertex + (100 if face >= 3 else 0), 0] for face, triangle in enumerate(strip) for vertex in triangle], dtype=float)
-    islands = arrays.surface_islands(strip.ravel(), values)
-    assert len(set(islands[:3])) == len(set(islands[3:])) == 1 and islands[0] != islands[3]
-    long = numpy.array([[i, i + 1, i + 2] for i in range(3000)])
-    assert len(set(arrays.surface_islands(long.ravel(), numpy.zeros((9000, 2))))) == 1
-    shuffled = numpy.random.default_rng(3).permutation(3002)[long]
-    assert len(set(arrays.surface_islands(shuffled.ravel(), numpy.zeros((9000, 2))))) == 1
+def test_parts_hang_together():
+    # A strip of triangles, cut after the third, in any order.
+    for count in (6, 3000):
+        order = numpy.random.default_rng(3).permutation(count)
+        place = numpy.empty(count, dtype=int)
+        place[order] = numpy.arange(count)
+        before, after = order - 1, order + 1
+        before[order == 3], after[order == 2], after[order == count - 1] = -1, -1, -1
+        sides = [numpy.where(one >= 0, place[one], -1) for one in (before, after)]
+        parts = arrays.connected(numpy.stack([*sides, numpy.full(count, -1)], axis=1))
+        assert len(set(parts[order < 3])) == len(set(parts[order >= 3])) == 1 and len(set(parts)) == 2
+    assert len(arrays.connected(numpy.zeros((0, 3), dtype=int))) == 0
 
 
 def test_turned_faces_have_the_same_edges():

@@ -17,6 +17,9 @@ def test_defaults_and_presets_are_valid():
     RemeshSettings().validate()
     for name in settings.PRESETS:
         settings.preset(name).validate()
+        assert "vertices" in settings.preset_summary(name)
+    assert settings.preset_summary("print") == "100,000 vertices, tunnels below 0.5% closed, components below 0.1% dropped"
+    assert {"game", "film", "sculpt", "archive", "print"} <= set(settings.PRESETS)
 
 
 @pytest.mark.parametrize(

@@ -142,19 +142,43 @@ def region(world):
 def test_a_region_becomes_an_operation(world, region):
     region.draw([region.line()])
     before = state(region.scan)
-    old = {obj.name for obj in bpy.context.scene.objects}
+    collections, texts = len(bpy.data.collections), len(bpy.data.texts)
+    names, groups = [obj.name for obj in region.levels], len(bpy.data.node_groups)
+    faces = len(region.level.data.polygons)
     assert bpy.ops.hybrid_mesh.repatch_region(buffer_rings=2) == {"FINISHED"}
     assert state(region.scan) == before
+    # In place: the same collection and objects.
     preview = bpy.context.object
-    assert preview.name not in old and bpy.context.mode == "OBJECT"
+    assert preview == region.preview and bpy.context.mode == "OBJECT"
+    assert (len(bpy.data.collections), len(bpy.data.texts), len(bpy.data.node_groups)) == (collections, texts, groups)
+    kept_levels = [bpy.data.objects[name] for name in names]
+    assert all(obj.hybrid_mesh.hierarchy == preview.hybrid_mesh.hierarchy and obj.data.name == obj.name for obj in kept_levels)
+    assert len(level_of(preview, "M1").data.polygons) == faces and module("bridge.levels").shown_object(preview) == region.levels[-1]
+    rows = module("features.levels.panel").level_rows(preview.hybrid_mesh.hierarchy)
+    assert [row[0] for row in rows][:3] == ["N0", "M1", "N1"]
     plan = json.loads(plan_of(preview))
     assert [(one["level"], one["quads"], one["buffer_rings"]) for one in plan["operations"]] == [(1, region.addresses, 2)]
     made = [obj for obj in preview.hybrid_mesh.hierarchy.objects if obj.hybrid_mesh.role == "LEVEL"]
     final = max(made, key=lambda obj: len(obj.data.polygons))
     assert module("bridge.meshes").get_attribute(final.data, "irregular").any()
     assert world.distance(region.scan, final)["hausdorff"] < 0.03
-    # What was there before is out of sight.
-    assert not any(bpy.data.objects[obj.name].visible_get() for obj in region.levels)
+    assert not any(obj.visible_get() for obj in made)
+
+
+def test_a_region_is_one_undo_step(world, region):
+    region.level.hide_set(False)
+    select_faces(world, region.level, region.faces)
+    hierarchy = region.level.hybrid_mesh.hierarchy
+    bpy.ops.ed.undo_push(message="before")
+    before = {obj.name: len(obj.data.vertices) for obj in hierarchy.objects}, plan_of(region.scan), hierarchy.hybrid_mesh.token, len(bpy.data.meshes)
+    assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    scan = bpy.data.objects["scan"]
+    hierarchy, levels, preview = world.hierarchy(scan)
+    assert before == ({obj.name: len(obj.data.vertices) for obj in hierarchy.objects}, plan_of(scan), hierarchy.hybrid_mesh.token, len(bpy.data.meshes))
+    assert module("features.levels.kept").find(hierarchy).hierarchy.operation_count == 0
+    assert module("bridge.levels").shown_object(preview) == levels[-1]
 
 
 def test_a_region_is_taken_in_edit_mode(world, region):
@@ -202,17 +226,19 @@ def test_a_region_of_the_hierarchy_at_hand_keeps_all_that_is_farther_off(world, 
     _, levels, _ = from_layout(world, world.scan(), vertices)
     levels[1].hide_set(False)
     select_faces(world, levels[1], {0})
+    before = [[tuple(vertex.co) for vertex in level.data.vertices] for level in levels]
+    token = levels[0].hybrid_mesh.hierarchy.hybrid_mesh.token
     assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
     made = [level_of(bpy.context.object, level.hybrid_mesh.level) for level in levels]
     assert ("more than the bound of 1,600" in capfd.readouterr().out) == more
-    for old, new in zip(levels, made, strict=True):
+    for old, new in zip(before, made, strict=True):
         points = {tuple(vertex.co) for vertex in new.data.vertices}
-        kept = sum(tuple(vertex.co) in points for vertex in old.data.vertices) / len(old.data.vertices)
-        assert kept == 1 if old.hybrid_mesh.level == "N0" else kept > 0.3
+        kept = sum(place in points for place in old) / len(old)
+        assert kept == 1 if new.hybrid_mesh.level == "N0" else kept > 0.3
     report = module("features.levels.properties").report_of(bpy.context.object.hybrid_mesh.hierarchy)
     assert report["final"]["vertices"] == len(made[-1].data.vertices) and report["final"]["l2"] is None
     # One more, in the hierarchy that has come of it; then what undo brings back is at hand as it was.
-    first = bpy.context.object.hybrid_mesh.hierarchy
+    first = bpy.context.object.hybrid_mesh.hierarchy.hybrid_mesh.token
     finer = made[2]
     finer.hide_set(False)
     irregular = module("bridge.meshes").get_attribute(finer.data, "irregular")
@@ -220,7 +246,7 @@ def test_a_region_of_the_hierarchy_at_hand_keeps_all_that_is_farther_off(world, 
     assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
     assert len(operations(bpy.context.object)) == 2
     kept = module("features.levels.kept")
-    assert kept.find(first).hierarchy.operation_count == 1 and kept.find(levels[0].hybrid_mesh.hierarchy).hierarchy.operation_count == 0
+    assert kept.of_token(first).hierarchy.operation_count == 1 and kept.of_token(token).hierarchy.operation_count == 0
 
 
 def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
@@ -231,7 +257,6 @@ def test_strokes_of_a_region_that_are_no_curves_are_named(world, region):
 
 
 def test_what_is_no_region(world, region):
-    refused(bpy.ops.hybrid_mesh.repatch_region, "no layout")
     region.draw([region.line()])
     hierarchy, mesh = region.level.hybrid_mesh.hierarchy, region.level.data
     for face in region.faces:
@@ -271,14 +296,14 @@ def select_faces(world, level, faces):
         polygon.select = polygon.index in faces
 
 
-@pytest.mark.parametrize("kind, new_quads", [("AUTOMATIC", None), ("CUBES", 14)])
+@pytest.mark.parametrize("kind, new_quads", [("DRAWN", None), ("AUTOMATIC", None), ("CUBES", 14)])
 def test_a_region_is_laid_out_without_curves(world, region, kind, new_quads):
     region.level.hide_set(False)
     select_faces(world, region.level, region.faces)
     assert bpy.ops.hybrid_mesh.repatch_region(layout_kind=kind, height=2, buffer_rings=0) == {"FINISHED"}
     preview = bpy.context.object
     (operation,) = json.loads(plan_of(preview))["operations"]
-    assert operation["layout"] == kind.lower() and operation["quads"] == region.addresses and "curves" not in operation
+    assert operation["layout"] == ("automatic" if kind == "DRAWN" else kind.lower()) and operation["quads"] == region.addresses and "curves" not in operation
     (made,) = operations(preview)
     assert sorted(made["quads"]) == sorted(region.addresses) and made["corners"] == 6
     assert new_quads is None or len(made["new_quads"]) == new_quads
@@ -317,8 +342,9 @@ def test_a_region_of_a_semi_regular_remesh_becomes_an_operation(world):
     region = Region(world, world.scan())
     region.level.hide_set(False)
     select_faces(world, region.level, region.faces)
+    faces = len(region.level.data.polygons)
     assert bpy.ops.hybrid_mesh.repatch_region(layout_kind="CUBES", height=1) == {"FINISHED"}
-    assert len(operations(bpy.context.object)) == 1 and len(level_of(bpy.context.object, "N1").data.polygons) == len(region.level.data.polygons) + 6
+    assert len(operations(bpy.context.object)) == 1 and len(level_of(bpy.context.object, "N1").data.polygons) == faces + 6
 
 
 @pytest.mark.parametrize("place", [{}, {"scale": (-1, 1, 1.3)}])

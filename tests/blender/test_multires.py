@@ -182,7 +182,7 @@ def test_an_adaptive_one_whose_last_irregular_level_has_larger_quads(world):
         bpy.context, "cubes", kept.Kept(hierarchy, at_hand.matrix), {}, place=module("bridge.placement").same_place(preview), source=scan,
     )  # fmt: skip
     transfer = module("bridge.transfer")
-    carry = transfer.nearest_carrier(module("bridge.meshes").read_source(scan, bpy.context.evaluated_depsgraph_get(), transfer.collect))
+    carry = transfer.Carrier(module("bridge.meshes").read_source(scan, bpy.context.evaluated_depsgraph_get(), transfer.collect))
     for obj, name in zip(built.levels, built.level_names):
         carry(obj, hierarchy.level(name))
     [obj] = convert(world, built.preview)

@@ -278,7 +278,46 @@ def test_nothing_selected_or_no_mesh_or_edit_mode(world):
 def test_hide_source(world):
     source = world.scan()
     assert bpy.ops.hybrid_mesh.remesh(vertices=500, hide_source=True) == {"FINISHED"}
-    assert source.hide_get()
+    preview = bpy.context.object
+    assert source.hide_get() and source.hide_render and preview.visible_get() and not preview.hide_render
+
+
+def test_previews_levels_and_layouts_stand_for_their_source(world, capfd):
+    source = world.scan(subdivisions=3)
+    modifier = source.modifiers.new("subdivision", "SUBSURF")
+    group = source.vertex_groups.new(name="none")
+    group = source.vertex_groups.new(name="upper")
+    group.add([vertex.index for vertex in source.data.vertices if vertex.co.z > 0], 1, "REPLACE")
+    _, levels, preview = world.remesh(source, vertices=400, effort="QUICK", hide_source=True)
+    # Modifiers above the preview's own find the source's groups.
+    assert [one.name for one in preview.vertex_groups] == ["none", "upper"]
+    points, _, _ = world.evaluated(preview)
+    push = preview.modifiers.new("push", "DISPLACE")
+    push.vertex_group, push.strength = "upper", 10
+    moved = numpy.linalg.norm(world.evaluated(preview)[0] - points, axis=1)
+    assert moved[points[:, 2] > 0.4].min() > 1 and moved[points[:, 2] < -0.4].max() < 1e-6
+    modifier.levels = 0  # of the source as it is now
+    levels[1].hide_set(False)
+    world.select(levels[1], preview)
+    capfd.readouterr()
+    assert bpy.ops.hybrid_mesh.remesh(vertices=400, effort="QUICK") == {"FINISHED"}
+    made = bpy.context.object.hybrid_mesh.hierarchy
+    assert made.hybrid_mesh.source == source and len(bpy.data.collections) == 2
+    assert module("features.levels.properties").report_of(made)["input"]["vertices"] == len(source.data.vertices)
+    assert "scan.N1, scan.preview: scan, the source, is remeshed" in capfd.readouterr().out
+    source.hide_set(False)
+    world.select(source)
+    assert bpy.ops.hybrid_mesh.draw_layout() == {"FINISHED"}
+    layout = bpy.context.object
+    bpy.ops.object.mode_set(mode="OBJECT")
+    world.select(layout)
+    assert bpy.ops.hybrid_mesh.remesh(vertices=400, effort="QUICK") == {"FINISHED"}
+    assert bpy.context.object.hybrid_mesh.hierarchy.hybrid_mesh.source == source
+    # Its source gone, a level is what it is: a mesh.
+    bpy.data.objects.remove(source)
+    world.select(levels[1])
+    assert bpy.ops.hybrid_mesh.remesh(vertices=400, effort="QUICK") == {"FINISHED"}
+    assert bpy.context.object.hybrid_mesh.hierarchy.hybrid_mesh.source == levels[1]
 
 
 def test_materials_come_along(world):
@@ -316,7 +355,7 @@ def test_what_the_surface_carries_comes_along(world):
                 place = mesh.vertices[mesh.loops[corner].vertex_index].co
                 layer.data[corner].uv = (place.y, place.z + (10 if polygon.center.x > 0 else 0))
 
-        _, levels, _ = world.remesh(source, vertices=5000)
+        _, levels, _ = world.remesh(source, vertices=3000, effort="QUICK")
         final, made = levels[-1], levels[-1].data
         paint = made.attributes["paint"].data
         # In object space, where the source's values were made; the fit moves vertices a little.
@@ -347,7 +386,7 @@ def test_adaptive(world):
 
 
 def test_presets_set_the_scene(world):
-    assert bpy.ops.hybrid_mesh.preset(name="ADAPTIVE") == {"FINISHED"}
+    assert bpy.ops.hybrid_mesh.preset(name="GAME") == {"FINISHED"}
     assert bpy.context.scene.hybrid_mesh.refinement == "ADAPTIVE"
     assert bpy.ops.hybrid_mesh.preset(name="DRAFT") == {"FINISHED"}
     settings = module("features.remesh.properties").core_settings(bpy.context.scene.hybrid_mesh)

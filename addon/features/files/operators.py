@@ -11,6 +11,7 @@ from ...bridge.names import readable
 from ...core import hierarchy_files
 from ...core.native import expected, explain
 from ...jobs import NativeJobOperator
+from ..display import properties as display_properties
 from ..levels import properties as hierarchy_properties
 from . import exporting, importing
 
@@ -65,6 +66,7 @@ class HYBRID_MESH_OT_import_hmesh(bpy.types.Operator, ImportHelper):
         if built:
             view.select_only(context, *(one.preview for one in built))
         for one in built:
+            display_properties.show(context, one.collection)
             report = hierarchy_properties.report_of(one.collection)
             self.report({"INFO"}, f"{one.collection.name}: {len(one.levels)} levels, {report['final']['vertices']:,} vertices")
         if errors:

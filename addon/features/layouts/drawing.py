@@ -80,6 +80,15 @@ def read_drawn(context, surface):
     return Drawn(objects.key_of(layout), kept, [fit_of(stroke) for stroke in found], layout.hybrid_mesh_layout.snap)
 
 
+def has_strokes(context, surface):
+    """Whether anything is drawn on a mesh object that is visible at the present frame."""
+    layout = properties.drawn_on(surface, context)
+    try:
+        return layout is not None and bool(strokes.read(layout, context.scene.frame_current))
+    except arrays.MatrixError:
+        return True  # read_drawn() says what is wrong.
+
+
 def fit_of(stroke):
     """'tight' or 'drawn', as the material says that the stroke is drawn in."""
     return "drawn" if stroke.material is not None and stroke.material.get(FIT) == "drawn" else "tight"

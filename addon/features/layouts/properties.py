@@ -15,7 +15,7 @@ KINDS = (
     ("PROBLEMS", "Problems", "Marks where a check found something wrong"),
 )
 REGION_LAYOUTS = (
-    ("DRAWN", "Drawn Curves", "The new quads are those that are drawn"),
+    ("DRAWN", "Drawn Curves", "The new quads are those that are drawn; where nothing is drawn, as with Automatic"),
     ("AUTOMATIC", "Automatic", "The new quads are found from the region's boundary, so that its corners become regular; rows in a ring, even quads where there are more boundaries or handles"),
     ("CUBES", "Cubes", "A tower of cubes grows skin on the region: rings of quads along its boundary, and its own quads on top"),
     ("ROWS", "Rows", "Rows of quads for a region that is a ring, from one of its boundaries to the other"),

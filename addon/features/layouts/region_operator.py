@@ -8,8 +8,9 @@ from bpy.props import EnumProperty
 from ...bridge import objects, view
 from ...core import plans
 from ...core import settings as core
+from ..levels import hierarchies
 from ..levels import properties as hierarchy_properties
-from ..remesh.job import RemeshJobOperator, remesh_task
+from ..remesh.job import RemeshJobOperator, build_hierarchy, remesh_task
 from ..remesh.properties import core_settings
 from . import drawing, problems, properties, region_quads, region_update
 
@@ -30,7 +31,7 @@ def _source_items(operator, context):
 
 
 class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperator):
-    """Lay out the selected faces of a level anew, along curves drawn over them or by a rule. All that is farther off stays as it is"""
+    """Lay out the selected faces of a level anew, along curves drawn over them, or by a rule. All that is farther off stays as it is"""
 
     bl_idname = "hybrid_mesh.repatch_region"
     bl_label = "Repatch Region"
@@ -40,6 +41,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
 
     _level = _hierarchy = None  # objects.key_of() them
     _drawn = None  # drawing.Drawn, if curves were drawn
+    _finest = 0  # number of the finest level that there was
     _update = None  # region_update.Update, where the hierarchy is at hand
 
     @classmethod
@@ -55,7 +57,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             self.layout.prop(self, "source")
 
     def prepare(self, context):
-        self._drawn = None
+        self._drawn, self._finest = None, 0
         level = properties.surface_of(objects.active(context), context.scene)
         hierarchy = level.hybrid_mesh.hierarchy
         source = hierarchy.hybrid_mesh.source
@@ -63,6 +65,9 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             raise ValueError(f"{hierarchy.name} was imported: there is no object that it was made of to lay the region out on")
         if source is None or not objects.in_scene(source, context.scene):
             raise ValueError(f"{hierarchy.name}: the object that it was made of is gone from the scene")
+        for block in (hierarchy, *region_quads.levels_of(hierarchy)):
+            if not objects.is_local(block):
+                raise ValueError(f"{block.name} comes of a library and cannot be changed")
         plan = hierarchy_properties.plan_of(hierarchy)
         if not plan:
             raise ValueError(f"{hierarchy.name} has no plan; remesh {source.name} again")
@@ -76,7 +81,7 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             return [remesh_task(source, graph, _settings_of(hierarchy, context.scene), plans.with_operation(plan, operation))]
 
     def _new_layout(self, context, level, hierarchy):
-        if self.layout_kind == "AUTOMATIC":
+        if self.layout_kind == "AUTOMATIC" or (self.layout_kind == "DRAWN" and not drawing.has_strokes(context, level)):
             return plans.automatic_layout()
         if self.layout_kind == "CUBES":
             return plans.cubes_layout(self.height)
@@ -104,17 +109,18 @@ class HYBRID_MESH_OT_repatch_region(properties.RegionProperties, RemeshJobOperat
             if layout is not None:
                 drawing.forget_problems(context, level, layout)
             drawing.hide(context, level)
-        hierarchy = bpy.data.collections.get(self._hierarchy)
-        if hierarchy is None:
-            return
-        for obj in hierarchy.objects:
-            # What was made before would cover what is new.
-            if objects.in_view_layer(obj, context.view_layer):
-                obj.hide_set(True)
         _, settings = results[0][0].note
-        lost = region_quads.finest_level(hierarchy) - region_quads.finest_level(objects.active(context).hybrid_mesh.hierarchy)
+        lost = self._finest - region_quads.finest_level(objects.active(context).hybrid_mesh.hierarchy)
         if lost > 0 and settings.vertices:
             self.report({"WARNING"}, f"With the new quads the bound of {settings.vertices:,} vertices leaves {'one level' if lost == 1 else f'{lost} levels'} less")
+
+    def build(self, context, obj, result, source, settings):
+        built = build_hierarchy(context, obj, result, source, settings)
+        hierarchy = bpy.data.collections.get(self._hierarchy)
+        if hierarchy is None:
+            return built
+        self._finest = region_quads.finest_level(hierarchy)
+        return hierarchies.take_over(built, hierarchy)
 
     def failed(self, context, task, error):
         problems.show_failure(context, self._level, self._drawn, error)

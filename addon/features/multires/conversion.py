@@ -87,5 +87,5 @@ def _base_object(context, collection, shown, name, base, matrix):
     for material in level.data.materials:
         mesh.materials.append(material)
     obj = made.make_object(context, collection, mesh, SUFFIX, name)
-    transfer.nearest_carrier(source)(obj, base)
+    transfer.Carrier(source)(obj, base)
     return obj

@@ -10,6 +10,7 @@ from ...core.native import native
 from ...core.tasks import Task
 from ...core.version import VERSION
 from ...jobs import NativeJobOperator
+from ..display import properties as display_properties
 from ..levels import hierarchies, kept
 from ..levels import properties as hierarchy_properties
 from ..topology import properties as topology_properties
@@ -55,18 +56,24 @@ class RemeshJobOperator(NativeJobOperator):
         built = []
         try:
             for obj, (task, result) in zip(sources, results, strict=True):
-                built.append(build_hierarchy(context, obj, result, *task.note))
+                built.append(self.build(context, obj, result, *task.note))
         except BaseException:
             for one in built:
                 hierarchies.remove(one)
             raise
         view.select_only(context, *(one.preview for one in built))
+        for one in built:
+            display_properties.show(context, one.collection)
         if self.hides_source(context):
             for obj in sources:
                 if objects.in_view_layer(obj, context.view_layer):
                     obj.hide_set(True)
+                if objects.is_local(obj):
+                    obj.hide_render = True  # The preview is rendered in its place.
         for one in built:
             self.report({"INFO"}, _line(one))
+            if one.warning:
+                self.report({"WARNING"}, f"{one.collection.name}: {one.warning}")
         for task, result in results:
             self._judge(task.name, json.loads(result.report), task.note[1].strict)
 
@@ -76,6 +83,10 @@ class RemeshJobOperator(NativeJobOperator):
             self.report({"WARNING"}, f"{name}: {warning}")
         for reason in reports.reasons(report):
             self.report({"ERROR" if strict else "WARNING"}, f"{name}: poor: {reason['text']}")
+
+    def build(self, context, obj, result, source, settings):
+        """levels.Built of a task's result."""
+        return build_hierarchy(context, obj, result, source, settings)
 
     def hides_source(self, context):
         raise NotImplementedError
@@ -97,9 +108,10 @@ def build_hierarchy(context, obj, result, source, settings):
     report["settings"] = settings.reported()
     repaired = result.repaired()
     at_hand = kept.Kept(result.hierarchy, source.matrix, source=source, settings=settings, repaired=repaired)
-    return hierarchies.build(
-        context, obj.name, at_hand, report, plan=result.plan, place=placement.same_place(obj), source=obj, carry=transfer.carrier(source, repaired)
-    )
+    carry = transfer.Carrier(source, repaired)
+    built = hierarchies.build(context, obj.name, at_hand, report, plan=result.plan, place=placement.same_place(obj), source=obj, carry=carry)
+    built.warning = carry.warning(built.level_names)
+    return built
 
 
 def _line(built):

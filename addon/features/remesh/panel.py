@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import bpy
 
+from ... import compat, jobs
 from .properties import SETTING_NAMES, draw_advanced, draw_settings
 
 
@@ -14,6 +15,8 @@ class HYBRID_MESH_PT_remesh(bpy.types.Panel):
 
     def draw(self, context):
         layout = self.layout
+        if jobs.running():
+            compat.draw_progress(layout.box(), *jobs.progress())
         settings = context.scene.hybrid_mesh
         layout.operator_menu_enum("hybrid_mesh.preset", "name", text="Presets")
         draw_settings(layout.column(), settings)

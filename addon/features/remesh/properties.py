@@ -82,6 +82,22 @@ def _density_names(properties, context, text):
     return [name for name in density.names_of(obj) if text.lower() in name.lower()] if obj is not None and obj.type == "MESH" else []
 
 
+# Settings that have a value at which they are off, or the remesh decides: that, and what they are when they are switched on.
+OFF = {"vertices": (0, 20000), "error": (0.0, 0.001), "levels": (-1, 3), "drop_components": (0.0, 0.001), "remove_noise": (0.0, 0.01), "threads": (0, 4)}
+
+
+def _switch(name, description):
+    """A property that says whether a setting is on, and switches it. description: what is where it is off."""
+    off, on = OFF[name]
+
+    def switch(self, value):
+        if value != (getattr(self, name) != off):
+            setattr(self, name, on if value else off)
+
+    text = f"Whether this is given; else {description}"
+    return BoolProperty(name="Given", description=text, get=lambda self: getattr(self, name) != off, set=switch, options={"SKIP_SAVE"})
+
+
 class RemeshProperties:
     """Mix-in for whatever has the settings of a remesh as properties."""
 
@@ -145,8 +161,19 @@ CUBES = IntProperty(
 SETTING_NAMES = tuple(RemeshProperties.__annotations__)
 
 
-class HybridMeshScene(RemeshProperties, bpy.types.PropertyGroup):
-    hide_source: BoolProperty(name="Hide Source", description="Hide the source in the viewport, so that the result is seen", default=True)
+class RemeshSwitches:
+    """Mix-in beside RemeshProperties: what is shown in the place of values that mean "off". None of them is a setting."""
+
+    use_vertices: _switch("vertices", "as many vertices as the source has")
+    use_error: _switch("error", "there is no bound on the distance")
+    use_levels: _switch("levels", "as many levels as are needed")
+    use_drop_components: _switch("drop_components", "all components are kept")
+    use_remove_noise: _switch("remove_noise", "all handles and tunnels are kept")
+    use_threads: _switch("threads", "all cores")
+
+
+class HybridMeshScene(RemeshSwitches, RemeshProperties, bpy.types.PropertyGroup):
+    hide_source: BoolProperty(name="Hide Source", description="Hide the source in viewports and renders, so that the result is seen in its place", default=True)
     cubes: CUBES
 
 
@@ -206,41 +233,68 @@ def apply_settings(properties, settings):
 
 
 def draw_settings(layout, properties):
-    layout.use_property_split = True
-    layout.use_property_decorate = False
-    column = layout.column()
+    column = _column(layout)
     column.prop(properties, "refinement", expand=True)
-    column.prop(properties, "vertices")
+    _draw_switched(column, properties, "vertices")
     column.prop(properties, "density")
-    column.prop(properties, "error")
-    column.prop(properties, "levels")
+    _draw_switched(column, properties, "error")
+    _draw_switched(column, properties, "levels")
     if properties.refinement == "ADAPTIVE":
         column.prop(properties, "faces")
 
 
 def draw_advanced(layout, properties):
+    for title, draw in (("Base and Topology", _draw_base), ("Edges and Symmetry", _draw_shape), ("Repair", _draw_repair), ("Run", _draw_run)):
+        box = layout.box()
+        box.label(text=title)
+        draw(_column(box), properties)
+
+
+def _column(layout):
     layout.use_property_split = True
     layout.use_property_decorate = False
-    column = layout.column()
+    return layout.column()
+
+
+def _draw_switched(column, properties, name):
+    """A setting with its switch; where it is off, *Auto* in the place of the value that means so."""
+    row = column.row(align=True, heading=properties.bl_rna.properties[name].name)
+    if getattr(properties, f"use_{name}"):
+        row.prop(properties, f"use_{name}", text="")
+        row.prop(properties, name, text="")
+    else:
+        row.prop(properties, f"use_{name}", text="Auto")
+
+
+def _draw_base(column, properties):
     column.prop(properties, "base")
     if properties.base == "GIVEN":
         column.prop(properties, "base_quads")
     column.prop(properties, "topology")
     column.prop(properties, "components")
+    column.prop(properties, "stretch")
+    column.prop(properties, "semi_regular")
+
+
+def _draw_shape(column, properties):
     column.prop(properties, "features")
     if properties.features == "ANGLE":
         column.prop(properties, "feature_angle")
     column.prop(properties, "symmetry")
     if properties.symmetry != "NONE":
         column.prop(properties, "symmetry_side")
-    column.prop(properties, "stretch")
-    column.prop(properties, "semi_regular")
-    column.prop(properties, "drop_components")
-    column.prop(properties, "remove_noise")
-    column.prop(properties, "effort")
+
+
+def _draw_repair(column, properties):
+    _draw_switched(column, properties, "drop_components")
+    _draw_switched(column, properties, "remove_noise")
     column.prop(properties, "strict")
+
+
+def _draw_run(column, properties):
+    column.prop(properties, "effort")
     column.prop(properties, "seed")
-    column.prop(properties, "threads")
+    _draw_switched(column, properties, "threads")
 
 
 PROPERTIES = ((bpy.types.Scene, "hybrid_mesh", HybridMeshScene),)

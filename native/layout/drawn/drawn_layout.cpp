@@ -16,6 +16,7 @@
 #include "layout/curves/vertex_placing.h"
 #include "layout/drawn/boundary_corners.h"
 #include "layout/drawn/curve_cleaning.h"
+#include "layout/drawn/detours.h"
 #include "layout/drawn/point_grid.h"
 #include "layout/drawn/stroke_path.h"
 #include "layout/drawn/stroke_projection.h"
@@ -416,6 +417,8 @@ class LayoutMaker {
       for (const PatchLayout::Side& s : cycle) small[s.curve] = 1;
     }
     for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = fixed[c] || small[number[c]];
+    const std::vector<char> detours = find_detours(curves_, fixed, 2 * snap_, progress_);
+    for (std::size_t c = 0; c < fixed.size(); ++c) fixed[c] = fixed[c] || detours[c];
     CurveTightener(curves_, fixed).tighten_all(progress_);
   }
 

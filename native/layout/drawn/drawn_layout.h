@@ -13,7 +13,7 @@ namespace hybrid_mesh {
 
 // A line drawn on a surface, or near it.
 struct DrawnStroke {
-  enum class Fit { Tight, AsDrawn };  // drawn tight to a geodesic, its ends held, or left where it is
+  enum class Fit { Tight, AsDrawn };  // drawn tight to a geodesic, its ends held, unless it runs far from that; or left where it is
   std::vector<Vec3> points;
   Fit fit = Fit::Tight;
 };

@@ -2,6 +2,9 @@
 #include "layout/drawn/patch_layout.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
 
 #include "base/error.h"
 
@@ -244,6 +247,50 @@ PatchLayout make_patch_layout(const TriangleSurface& surface, const SurfaceCurve
   return LayoutBuilder(surface, curves).run(nodes);
 }
 
+namespace {
+
+// The shortest way along the edges of a face from its first rim to another one: a line on the face itself, and where a curve may divide it.
+std::vector<Vec3> find_way_across(const PatchLayout& layout, int f) {
+  const LayoutFacePart part = cut_out(layout, f);
+  const TriangleSurface& mesh = part.mesh;
+  std::vector<char> is_rim(mesh.points.size(), 0), is_first(mesh.points.size(), 0);
+  std::vector<std::vector<int>> around(mesh.points.size());
+  for (std::size_t h = 0; h < 3 * mesh.faces.size(); ++h) {
+    const int from = mesh.faces[h / 3][h % 3], to = mesh.faces[h / 3][(h + 1) % 3];
+    around[from].push_back(to);
+    around[to].push_back(from);
+    if (mesh.opposite[h] < 0) is_rim[from] = is_rim[to] = 1;
+  }
+  for (const std::vector<int>& side : part.sides)
+    for (const int v : side) is_first[v] = 1;
+  std::vector<double> length(mesh.points.size(), std::numeric_limits<double>::infinity());
+  std::vector<int> previous(mesh.points.size(), -1);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  for (int v = 0; v < static_cast<int>(mesh.points.size()); ++v)
+    if (is_first[v]) length[v] = 0, queue.push({0, v});
+  while (!queue.empty()) {
+    const auto [at, v] = queue.top();
+    queue.pop();
+    if (at > length[v]) continue;
+    if (is_rim[v] && !is_first[v]) {
+      std::vector<Vec3> way;
+      for (int w = v; w >= 0; w = previous[w]) way.push_back(mesh.points[w]);
+      return way;
+    }
+    for (const int w : around[v]) {
+      const double next = at + (mesh.points[w] - mesh.points[v]).norm();
+      if (!(next < length[w])) continue;
+      length[w] = next;
+      previous[w] = v;
+      queue.push({next, w});
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 std::vector<LayoutProblem> find_problems(const PatchLayout& layout) {
   using Kind = LayoutProblem::Kind;
   std::vector<LayoutProblem> problems;
@@ -278,7 +325,9 @@ std::vector<LayoutProblem> find_problems(const PatchLayout& layout) {
       std::string message = rims == 2 && handles == 0 ? "a face is a ring" : "a face is no disk";
       message += ": it has " + std::to_string(rims) + (rims == 1 ? " rim" : " separate rims");
       if (handles > 0) message += " and " + std::to_string(handles) + (handles == 1 ? " handle" : " handles");
-      problems.push_back({Kind::NotADisk, message, rim, -1, f});
+      // The rims are the neighbours' as well, and the middle between them may be far from the face.
+      const std::vector<Vec3> across = rims > 1 ? find_way_across(layout, f) : std::vector<Vec3>();
+      problems.push_back({Kind::NotADisk, message, across.empty() ? rim : across, -1, f});
     } else if (dangling) {
       continue;
     } else if (sides < 3) {

@@ -131,6 +131,13 @@ TEST(DrawnLayout, LoopsOnATorusAndACylinder) {
   d = layout_of(ring, {across});
   expect_sound(ring, d.layout);
   EXPECT_EQ(count(d, Kind::NotADisk), 1);
+  // Marked on the face, from rim to rim: all around the torus, from one side of the curve at the angle 1 to the other.
+  for (const LayoutProblem& p : d.problems) {
+    double turn = 0;
+    for (std::size_t i = 1; i < p.where.size(); ++i)
+      turn += std::atan2(p.where[i - 1].cross(p.where[i]).z(), p.where[i - 1].head<2>().dot(p.where[i].head<2>()));
+    EXPECT_NEAR(std::abs(turn), 2 * std::numbers::pi, 0.5);
+  }
 
   const TriangleSurface cylinder = repaired(glued_rectangle(24, 8, false, false));
   DrawnStroke along;
@@ -148,6 +155,62 @@ TEST(DrawnLayout, LoopsOnATorusAndACylinder) {
   d = layout_of(cylinder, {});
   expect_sound(cylinder, d.layout);
   EXPECT_EQ(count(d, Kind::NotADisk), 1);
+}
+
+TEST(DrawnLayout, ARingIsMarkedWhereItIs) {
+  // Circles at the heights 0.9 and -0.1: a cap, a ring, and a bowl.
+  const TriangleSurface surface = unit(sphere(20));
+  const double radius = surface.points[0].norm();
+  std::vector<DrawnStroke> circles(2);
+  const double heights[2] = {0.9, -0.1};
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i <= 40; ++i) {
+      const double a = 2 * std::numbers::pi * i / 40, z = heights[k];
+      circles[k].points.push_back(radius * Vec3(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z));
+      circles[k].fit = DrawnStroke::Fit::AsDrawn;
+    }
+  const DrawnLayout d = layout_of(surface, circles);
+  ASSERT_EQ(count(d, Kind::NotADisk), 1);
+  for (const LayoutProblem& p : d.problems) {
+    if (p.kind != Kind::NotADisk) continue;
+    ASSERT_GE(p.where.size(), 2u);
+    for (const Vec3& x : p.where) {
+      EXPECT_GT(x.z() / radius, -0.15);
+      EXPECT_LT(x.z() / radius, 0.95);
+      EXPECT_GT(x.norm(), 0.95 * radius);
+    }
+    EXPECT_NEAR(std::abs(p.where.front().z() - p.where.back().z()) / radius, 1.0, 0.05);
+    // Not around: the way is no longer than it has to be.
+    EXPECT_LT((p.where.front() - p.where.back()).norm(), 1.6 * radius);
+  }
+}
+
+TEST(DrawnLayout, WhatRunsFarFromTheShortestWayStaysAsDrawn) {
+  const TriangleSurface surface = unit(sphere(24));
+  const double radius = surface.points[0].norm();
+  // The edges of a cube, one of them an arc that leaves the shortest way by `bulge` times its length; twelve of them, six quads.
+  for (const double bulge : {0.05, 0.4}) {
+    std::vector<DrawnStroke> strokes = sphere_cube(0, 0, 1, radius);
+    DrawnStroke& arc = strokes[0];
+    const Vec3 start = arc.points.front(), end = arc.points.back();
+    const Vec3 side = start.cross(end).normalized(), middle = radius * (0.5 * (start + end) + bulge * (end - start).norm() * side).normalized();
+    arc.points.clear();
+    for (int i = 0; i <= 40; ++i) {
+      const double t = i / 40.0;
+      const Vec3 bow = 4 * t * (1 - t) * bulge * (end - start).norm() * side;
+      arc.points.push_back(radius * ((1 - t) * start + t * end + bow).normalized());
+    }
+    const DrawnLayout d = layout_of(surface, strokes);
+    expect_sound(surface, d.layout);
+    EXPECT_EQ(all_messages(d), "");
+    double nearest = 1;
+    for (const PatchLayout::Curve& c : d.layout.curves)
+      for (const int v : c.points) nearest = std::min(nearest, (d.layout.mesh.points[v] - middle).norm() / radius);
+    if (bulge < 0.1)
+      EXPECT_GT(nearest, 0.04);  // tight
+    else
+      EXPECT_LT(nearest, 0.04);
+  }
 }
 
 TEST(DrawnLayout, ComponentsApart) {
