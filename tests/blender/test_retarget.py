@@ -195,7 +195,8 @@ def test_seams_and_custom_properties(world):
     assert made.id_properties_ui("number").as_dict()["max"] == 5
     seams = [edge for edge in made.data.edges if edge.use_seam]
     heights = [abs(made.data.vertices[vertex].co.y) for edge in seams for vertex in edge.vertices]
-    assert 20 < len(seams) < len(made.data.edges) / 5 and max(heights) < 0.15
+    # The source's seam has teeth, a face of it deep; quads have their side by what lies under their middle.
+    assert 20 < len(seams) < len(made.data.edges) / 5 and max(heights) < 0.2 and numpy.mean(heights) < 0.05
 
 
 def test_undo(world):
