@@ -74,12 +74,16 @@ bool is_within(const RemeshTask& task, const Candidate& c) {
   return task.options.vertices == 0 || whole_vertices(c.hierarchy, task.source) <= task.options.vertices;
 }
 
+void close(Candidate& c, int from_level, const std::string& why) {
+  for (std::size_t e = 0; e < c.opened_on.size(); ++e)
+    if (c.opened_on[e] >= from_level) c.unopened.push_back({static_cast<int>(e), why});
+  std::sort(c.unopened.begin(), c.unopened.end());
+}
+
 // What opened on the finest level finds no room.
 void close_finest(Candidate& c) {
   const int finest = c.opened_on.empty() ? 0 : *std::max_element(c.opened_on.begin(), c.opened_on.end());
-  for (std::size_t e = 0; finest > 0 && e < c.opened_on.size(); ++e)
-    if (c.opened_on[e] == finest) c.unopened.push_back({static_cast<int>(e), "the quads around it would be more than the mesh may have"});
-  std::sort(c.unopened.begin(), c.unopened.end());
+  if (finest > 0) close(c, finest, "the quads around it would be more than the mesh may have");
 }
 
 Candidate make_candidate(const RemeshTask& task, const Budget& budget, const BaseRequest& request, bool features, WorkingSurfaceInUse& in_use) {
@@ -121,6 +125,7 @@ Candidate make_candidate(const RemeshTask& task, const Budget& budget, const Bas
     });
     c.unopened = std::move(late.unopened);
     c.waited = std::move(late.waited);
+    if (options.levels >= 0) close(c, options.levels + 1, "it would open above the last level that the mesh may have");
     return c;
   };
   const OpeningBounds bounds = opening_bounds(options, budget.vertices);

@@ -200,6 +200,19 @@ TEST(LateTopology, TheBoundOnVerticesHoldsWhateverOpens) {
   }
 }
 
+TEST(LateTopology, OpensOnTheLastLevelAtLatest) {
+  for (const Refinement refinement : {Refinement::Uniform, Refinement::Adaptive})
+    for (const int levels : {1, 2, 3}) {
+      RemeshOptions options = late(20000, refinement);
+      options.levels = levels;
+      const RemeshResult r = run(torus(60, 30), options);
+      expect_sound(r);
+      expect_levels_as_reported(r);
+      EXPECT_LE(r.hierarchy.depth(), levels);
+      EXPECT_EQ(r.report["final"]["genus"], 1);
+    }
+}
+
 TEST(LateTopology, BoundariesOpenOnAFinerLevel) {
   const PolygonSoup open = ball(16, 0.7);
   const RemeshResult r = run(open, late(3000));
