@@ -63,7 +63,8 @@ inline PolygonSoup cubes(int count) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.4 * k, Vec3(1, 0.7 * k, -0.3).normalized()).toRotationMatrix();
     std::array<int, 27> number{};
     for (int i = 0; i < 27; ++i) {
-      const Vec3 p(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const int column = i % 3, row = i / 3 % 3, layer = i / 9;
+      const Vec3 p(column - 1, row - 1, layer - 1);
       if (i == 13) continue;
       number[i] = static_cast<int>(points.size());
       points.push_back(turn * p + Vec3(5 * k, 0, 0));

@@ -13,7 +13,7 @@ sys.path += [str(ROOT / "scripts"), str(ROOT / "build/stage")]
 import reference_pages  # noqa: E402
 from hybrid_mesh.core import arguments  # noqa: E402
 
-PAGES = sorted([*ROOT.glob("docs/**/*.md"), ROOT / "README.md", ROOT / "blend_samples/README.md", ROOT / "native/README.md"])
+PAGES = sorted([*ROOT.glob("docs/**/*.md"), ROOT / "README.md", ROOT / "blend_samples/README.md", ROOT / "native/README.md", ROOT / "native/decoder/web/README.md"])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 FLAG = re.compile(r"(?<![\w-])--[a-z][a-z-]+")
 # Of programs that are not ours, on lines that name them, and of Blender, which starts the command line.

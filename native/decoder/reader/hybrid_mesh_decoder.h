@@ -18,6 +18,7 @@ extern "C" {
 
 typedef struct hybrid_mesh_decoder hybrid_mesh_decoder;
 
+/* NOLINTBEGIN(readability-identifier-naming): names as C has them. */
 typedef enum hybrid_mesh_status {
   HYBRID_MESH_OK = 0,
   HYBRID_MESH_CORRUPT = 1,     /* not a stream, or one that ends before its base does, or of more quads than are allowed */
@@ -26,6 +27,7 @@ typedef enum hybrid_mesh_status {
   HYBRID_MESH_OUT_OF_MEMORY = 4,
   HYBRID_MESH_INTERNAL = 5 /* a defect of the decoder */
 } hybrid_mesh_status;
+/* NOLINTEND(readability-identifier-naming) */
 
 /* A decoder of a stream, or of its first bytes, which are copied. NULL: out of memory. */
 hybrid_mesh_decoder* hybrid_mesh_decoder_open(const uint8_t* bytes, size_t size);
