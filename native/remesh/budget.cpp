@@ -13,8 +13,8 @@ constexpr int kMostPlannedLevels = 6;  // above a base whose size is free: more 
 // What is around a rod of unit length is its area long, and so many quads of a base at least belong there: of fewer than three none could be square.
 constexpr double kQuadsAround = 3.5;
 
-constexpr double kQuadsWithFeatures = 300;  // in a base between features, in which quads have less to choose from
-constexpr double kQuadsACorner = 1.5;       // of a feature, each of which is a node
+constexpr double kQuadsBetweenFeatures = 300;  // in a base between features, in which quads have less to choose from
+constexpr double kQuadsACorner = 1.5;          // of a feature, each of which is a node
 
 }  // namespace
 
@@ -31,11 +31,11 @@ Budget plan_budget(const RemeshOptions& options, const Source& source, const Tar
   b.vertices /= source.copies();
   // Roughly what the topology asks for at least.
   const TopologySummary& topology = source.topology;
-  const bool features = target.features && source.keeps_features;
+  const bool between = target.features && source.keeps_features && source.has_inner_features;
   const double least =
-      6.0 * topology.components + 8 * topology.genus + 2.6 * topology.boundary_loops + (features ? kQuadsACorner * source.feature_corners : 0);
+      6.0 * topology.components + 8 * topology.genus + 2.6 * topology.boundary_loops + (between ? kQuadsACorner * source.feature_corners : 0);
   const double for_rods = topology.boundary_loops > 0 ? 0 : kQuadsAround * kQuadsAround / source.area;  // a strip is none
-  const double small = static_cast<double>(b.vertices) / (features ? 16 : 64), most = features ? kQuadsWithFeatures : 150.0;
+  const double small = static_cast<double>(b.vertices) / (between ? 16 : 64), most = between ? kQuadsBetweenFeatures : 150.0;
   const double enough = std::max(std::clamp(small, 20.0, most), std::min(std::max(1.7 * least, for_rods), b.vertices / 4.0));
   if (options.levels >= 0 && options.refinement == Refinement::Uniform) {
     b.levels = options.levels;

@@ -56,6 +56,7 @@ void look_for_features(Source& source, const RemeshOptions& options) {
   wanted->least_length *= source.placement.diagonal;
   const FeatureGraph graph = find_features(source.repaired, *wanted);
   source.has_features = !graph.empty();
+  for (std::size_t h = 0; h < graph.edges.size(); ++h) source.has_inner_features |= graph.edges[h] && source.repaired.opposite[h] >= 0;
   source.feature_corners = static_cast<int>(std::count(graph.corners.begin(), graph.corners.end(), 1));
   const double corners = source.copies() * source.feature_corners;
   const auto has = [&](double vertices_a_corner) {

@@ -41,6 +41,7 @@ struct Source {
   bool keeps_features = false;        // ... and is there room for them in the mesh that is asked for?
   bool features_are_crowded = false;  // ... but not much
   int feature_corners = 0;            // where they end, meet or turn
+  bool has_inner_features = false;    // are some of them not on the boundary?
   Density density;                    // that quads are to have
   std::string fingerprint;
   std::unique_ptr<const DistanceReference> reference;  // the input as it was read, of unit size
