@@ -234,7 +234,7 @@ CandidateSearch best_with_features(const RemeshTask& task) {
   }
   CandidateSearch with = std::move(*best);
   if (with.candidate && inverted(*with.candidate) < kManyInverted) return with;
-  CandidateSearch without = best_without_features(task);
+  CandidateSearch without = best_for(task, {.features = false}, false);
   if (!without.candidate || (with.candidate && least.distance <= badness(task, *without.candidate).distance))
     return with.candidate ? std::move(with) : without;
   without.candidate->lost_features = with.candidate ? "the quads between them would be distorted" : with.candidate.reason;
