@@ -115,7 +115,7 @@ def _add_compare(commands):
     command.add_argument("a", metavar="A", help="the reference: distances are fractions of its bounding-box diagonal")
     command.add_argument("b", metavar="B", help="the other mesh, of any kind that can be read")
     command.add_argument("--samples", type=_whole(1), default=200000, metavar="N", help="a direction (default 200000)")
-    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+    _add_timeout(command)
 
 
 def _add_info(commands):
@@ -123,7 +123,7 @@ def _add_info(commands):
     command.set_defaults(command="info")
     command.add_argument("file", metavar="FILE.hmesh", help="a hierarchy or a stream")
     command.add_argument("--check", action="store_true", help="verify invariants, topology and every stored map")
-    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+    _add_timeout(command)
 
 
 def _add_encode(commands):
@@ -139,7 +139,7 @@ def _add_encode(commands):
     )  # fmt: skip
     command.add_argument("--source", metavar="SCAN", help="the mesh that was remeshed: vertices are moved to where fewer bytes come as close to it (default: to what the maps know of it)")
     command.add_argument("--exact", action="store_true", help="leave all vertices where they are")
-    command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
+    _add_timeout(command)
 
 
 def _add_decode(commands):
@@ -149,6 +149,10 @@ def _add_decode(commands):
     command.add_argument("--output", required=True, metavar="FILE", help=f"the mesh: {', '.join('.' + form for form in input_files.MESH_FORMATS)}")
     command.add_argument("--bytes", type=_whole(1), metavar="N", help="read no more of a stream: a coarser version of all levels")
     command.add_argument("--level", type=_whole(0), metavar="J", help="this level, 0 being the base, instead of the final mesh")
+    _add_timeout(command)
+
+
+def _add_timeout(command):
     command.add_argument("--timeout", type=_positive, default=0, metavar="S", help="seconds after which it has failed")
 
 

@@ -44,13 +44,13 @@ bool sticks_out(const RemeshTask& task, const Candidate& c, double widths) {
   return c.distance.hausdorff >= most && protrusion(task.source.repaired, task.source.placement, c.final_mesh) >= most;
 }
 
-// Of the requests for a minimal base where it is only one of the ways that are tried: the first ones are the cheapest.
-constexpr std::size_t kMinimalRequests = 2;
-
 bool misses_a_limb(const RemeshTask& task, const Candidate& c) {
   const bool likely = may_be_minimal(task) && task.source.topology.genus <= static_cast<double>(task.source.topology.components);
   return sticks_out(task, c, likely ? kMissed : kMissedByFar);
 }
+
+// Of the requests for a minimal base where it is only one of the ways that are tried: the first ones are the cheapest.
+constexpr std::size_t kMinimalRequests = 2;
 
 // What is tried where the first remesh has missed something: a minimal base, which has few quads and grows skin on a finer level, keeps limbs that a
 // fitted one loses; else a base of which near-ties are decided in another way.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "layout/curves/curve_tightening.h"
+#include "layout/curves/surface_paths.h"
 
 namespace hybrid_mesh {
 namespace {
@@ -15,9 +16,8 @@ constexpr double kFar = 0.2;
 double distance(const Vec3& p, const std::vector<Vec3>& line) {
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const Vec3 along = line[i] - line[i - 1];
-    const double square = along.squaredNorm(), t = square > 0 ? std::clamp((p - line[i - 1]).dot(along) / square, 0.0, 1.0) : 0.0;
-    best = std::min(best, (p - line[i - 1] - t * along).norm());
+    const Vec3 &a = line[i - 1], &b = line[i];
+    best = std::min(best, (p - a - nearest_on_segment(p, a, b) * (b - a)).norm());
   }
   return best;
 }
